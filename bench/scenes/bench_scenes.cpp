@@ -1,0 +1,22 @@
+#include "scenes/bench_scenes.hpp"
+
+#include "scenes/builders.hpp"
+
+namespace carom::bench {
+
+std::span<const BenchScene> bench_scenes() {
+    static constexpr BenchScene scenes[] = {
+        {"large_pyramid_2", 500, large_pyramid<2>},
+        {"many_pyramids_2", 200, many_pyramids<2>},
+        {"smash_2", 300, smash},
+        {"large_pyramid_3", 200, large_pyramid<3>},
+        {"many_pyramids_3", 100, many_pyramids<3>},
+        {"convex_pile_3", 500, convex_pile},
+        {"large_world_3", 500, large_world},
+        {"wide_pyramid_3", 500, wide_pyramid},
+        {"pyramid_3", 500, pyramid, true},
+    };
+    return scenes;
+}
+
+}  // namespace carom::bench

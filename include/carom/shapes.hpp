@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "carom/transform.hpp"
+
+namespace carom {
+
+/// A disk in the plane, a solid sphere in space, about the origin of the shape's frame.
+struct Ball {
+    double radius = 0.5;  ///< m, positive
+};
+
+/// A rectangle or a cuboid, centred on the origin of the shape's frame.
+template <int D>
+struct Box {
+    Vec<D> size{};        ///< full lengths, m, positive, the rounding included
+    double rounding = 0;  ///< radius of the rounded edges, m, 0 … half of the smallest length
+};
+
+/// All points within `radius` of the segment from `from` to `to`.
+template <int D>
+struct Capsule {
+    Vec<D> from{};        ///< m
+    Vec<D> to{};          ///< m
+    double radius = 0.5;  ///< m, positive
+};
+
+/// The convex hull of `points` (at least D + 1 that span an area or a volume), grown by `rounding`.
+/// A triangle is a hull of three points.
+template <int D>
+struct Hull {
+    std::vector<Vec<D>> points{};  ///< m, in any order
+    double rounding = 0;           ///< m, not negative
+};
+
+/// The half-space n · x ≤ offset. Only fixed bodies carry it; it has no mass.
+template <int D>
+struct Plane {
+    Vec<D> normal{};    ///< out of the solid; any length but zero
+    double offset = 0;  ///< m, along the unit normal
+};
+
+/// A solid cylinder about the y axis of the shape's frame, centred on its origin.
+struct Cylinder {
+    double radius = 0.5;  ///< m, positive
+    double height = 1;    ///< m, positive
+};
+
+/// A solid cone about the y axis of the shape's frame; the base lies at y = −height/2, the tip at +height/2.
+struct Cone {
+    double radius = 0.5;  ///< m, positive
+    double height = 1;    ///< m, positive
+};
+
+using Box2 = Box<2>;
+using Box3 = Box<3>;
+using Capsule2 = Capsule<2>;
+using Capsule3 = Capsule<3>;
+using Hull2 = Hull<2>;
+using Hull3 = Hull<3>;
+using Plane2 = Plane<2>;
+using Plane3 = Plane<3>;
+
+/// One of the shapes that exist in the dimension `D`.
+template <int D>
+using Geometry =
+    std::conditional_t<D == 2, std::variant<Ball, Box<2>, Capsule<2>, Hull<2>, Plane<2>>,
+                       std::variant<Ball, Box<3>, Capsule<3>, Hull<3>, Plane<3>, Cylinder, Cone>>;
+
+/// What a shape is made of.
+struct Material {
+    double density = 1000;   ///< kg/m³ (kg/m² in the plane), not negative
+    double friction = 0.6;   ///< Coulomb's coefficient, not negative; a pair uses the geometric mean
+    double restitution = 0;  ///< share of the approach speed that comes back, 0 … 1; a pair uses the larger
+    double rolling_resistance =
+        0;  ///< coefficient c: the resisting torque is at most c · radius · normal force
+};
+
+/// Who meets whom: a pair collides when each one's `category` is in the other's `mask`. Two shapes of the
+/// same non-zero `group` always collide when it is positive and never when it is negative.
+struct Filter {
+    std::uint64_t category = 1;
+    std::uint64_t mask = ~std::uint64_t{0};
+    std::int32_t group = 0;
+};
+
+/// A shape as it is put on a body.
+template <int D>
+struct ShapeDefinition {
+    Geometry<D> geometry{};
+    Vec<D> center{};         ///< place of the shape's frame in the body's frame, m
+    Rotation<D> rotation{};  ///< turn of the shape's frame in the body's frame; unit length
+    Material material{};
+    Filter filter{};
+    std::uint64_t user_data = 0;  ///< yours
+};
+
+using ShapeDefinition2 = ShapeDefinition<2>;
+using ShapeDefinition3 = ShapeDefinition<3>;
+
+}  // namespace carom

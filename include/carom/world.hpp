@@ -1,0 +1,211 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "carom/body.hpp"
+#include "carom/collide.hpp"
+#include "carom/forces.hpp"
+
+namespace carom {
+
+/// How a body that nothing touches moves through a step of length h. Bodies in contact always go through the
+/// sub-stepped solver, whose positions are second order for steady forces.
+enum class Integrator : std::uint8_t {
+    semi_implicit_euler,  ///< v += h a, x += h v; exact (x += h v + ½ h² a) where only constant forces act
+    explicit_euler,       ///< x += h v, v += h a: for lessons; gains energy
+    verlet,               ///< velocity Verlet: second order, symplectic
+    rk4,                  ///< classical Runge–Kutta: fourth order
+};
+
+/// How several impacts at once share their impulses.
+enum class Impacts : std::uint8_t {
+    simultaneous,  ///< together
+    sequential,    ///< one after the other
+};
+
+/// The settings of a world.
+template <int D>
+struct WorldDefinition {
+    Vec<D> gravity = [] {
+        Vec<D> g{};
+        g.y = -9.81;
+        return g;
+    }();               ///< m/s²
+    int substeps = 4;  ///< 1 … 64 solver passes a step
+    Integrator integrator = Integrator::semi_implicit_euler;
+    Impacts impacts = Impacts::simultaneous;
+    bool sleep = true;                 ///< bodies at rest may fall asleep
+    bool continuous = true;            ///< fast bodies do not pass through fixed ones
+    double restitution_threshold = 1;  ///< m/s: slower impacts do not bounce; not negative
+};
+
+using WorldDefinition2 = WorldDefinition<2>;
+using WorldDefinition3 = WorldDefinition<3>;
+
+/// Where a body that moved in the last step is now.
+template <int D>
+struct MovedBody {
+    BodyId<D> body{};
+    std::uint64_t user_data = 0;
+    Transform<D> transform{};  ///< of the body's frame
+};
+
+/// One point of a contact after the step.
+template <int D>
+struct ContactPoint {
+    Vec<D> position{};      ///< m
+    double separation = 0;  ///< m; negative where the shapes overlap
+    double impulse = 0;     ///< normal impulse that the last step spent here, N·s
+    std::uint32_t feature = 0;
+};
+
+/// Two shapes that touch after the step.
+template <int D>
+struct Contact {
+    BodyId<D> body_a{}, body_b{};
+    ShapeId<D> shape_a{}, shape_b{};
+    Vec<D> normal{};            ///< from a towards b, unit
+    Vec<D> friction_impulse{};  ///< on b, N·s
+    std::array<ContactPoint<D>, Manifold<D>::capacity> points{};
+    int count = 0;
+};
+
+/// Numbers of a world.
+struct Counts {
+    int bodies = 0, shapes = 0, forces = 0, joints = 0;
+    int awake = 0;     ///< dynamic bodies that are awake
+    int contacts = 0;  ///< pairs of shapes that touch or are about to
+};
+
+/// Kinetic energy, and potential energy in the world's uniform gravity, in point gravities and in springs; J.
+/// The zero of height is the origin.
+struct Energy {
+    double kinetic = 0;
+    double potential = 0;
+    double total() const { return kinetic + potential; }
+};
+
+namespace detail {
+template <int D>
+struct WorldState;
+}
+
+/// A world of rigid bodies. Bodies are added and removed at any time between steps; `step` moves time on.
+/// Every function that takes a handle throws `Error` when the handle names nothing, and every function that
+/// takes a definition throws `Error` when that cannot be simulated; the world is then as before the call.
+///
+/// The result of a step depends on the calls alone: the same calls give the same bits on every machine.
+/// One world is used by one thread at a time; const functions may run on several at once.
+template <int D>
+class World {
+  public:
+    explicit World(const WorldDefinition<D>& definition = {});
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    /// The settings; `set_gravity` wakes every body.
+    const WorldDefinition<D>& definition() const;
+    void set_gravity(const Vec<D>& gravity);
+
+    /// Adds a body with its shapes.
+    BodyId<D> add_body(const BodyDefinition<D>& definition);
+    /// Removes a body, its shapes, and the force generators that name it.
+    void remove_body(BodyId<D> body);
+    /// Puts one more shape on a body; its mass properties follow unless they were overridden.
+    ShapeId<D> add_shape(BodyId<D> body, const ShapeDefinition<D>& definition);
+    /// Takes a shape off its body.
+    void remove_shape(ShapeId<D> shape);
+    /// Adds a generator of forces.
+    ForceId<D> add_force(const ForceDefinition<D>& definition);
+    void remove_force(ForceId<D> force);
+
+    /// Does the handle name something that is there?
+    bool contains(BodyId<D> body) const;
+    bool contains(ShapeId<D> shape) const;
+    bool contains(ForceId<D> force) const;
+
+    /// Moves time on by `dt` seconds (positive, at most 1).
+    void step(double dt);
+    /// Seconds of world time since the start.
+    double time() const;
+    /// Steps taken since the start.
+    std::uint64_t steps() const;
+
+    /// Placement of the body's frame.
+    Transform<D> transform(BodyId<D> body) const;
+    Vec<D> position(BodyId<D> body) const;
+    Rotation<D> rotation(BodyId<D> body) const;
+    /// Angle of a body in the plane, whole turns included, rad. Only in 2D.
+    double angle(BodyId<D> body) const requires(D == 2);
+    /// Centre of mass in the world, m.
+    Vec<D> center_of_mass(BodyId<D> body) const;
+    /// Velocity of the centre of mass, m/s.
+    Vec<D> velocity(BodyId<D> body) const;
+    Angular<D> angular_velocity(BodyId<D> body) const;
+    /// Velocity of the body's material at a point of the world, m/s.
+    Vec<D> velocity_at(BodyId<D> body, const Vec<D>& point) const;
+    MassProperties<D> mass_properties(BodyId<D> body) const;
+    BodyType type(BodyId<D> body) const;
+    bool awake(BodyId<D> body) const;
+    std::string_view name(BodyId<D> body) const;
+    std::uint64_t user_data(BodyId<D> body) const;
+    /// The shapes of a body, in the order in which they were added.
+    std::span<const ShapeId<D>> shapes(BodyId<D> body) const;
+    const ShapeDefinition<D>& shape(ShapeId<D> shape) const;
+    BodyId<D> body_of(ShapeId<D> shape) const;
+    /// All bodies, in the order of their places.
+    std::span<const BodyId<D>> bodies() const;
+
+    /// Places a body elsewhere at once and wakes what it touched. Its velocity stays.
+    void set_transform(BodyId<D> body, const Transform<D>& transform);
+    void set_velocity(BodyId<D> body, const Vec<D>& velocity);
+    void set_angular_velocity(BodyId<D> body, const Angular<D>& angular_velocity);
+    void set_type(BodyId<D> body, BodyType type);
+    void set_gravity_scale(BodyId<D> body, double scale);
+    void set_damping(BodyId<D> body, double linear, double angular);
+    void set_locks(BodyId<D> body, const Locks& locks);
+    /// Overrides what the shapes give.
+    void set_mass_properties(BodyId<D> body, const MassProperties<D>& properties);
+    void set_user_data(BodyId<D> body, std::uint64_t user_data);
+    void wake(BodyId<D> body);
+    void put_to_sleep(BodyId<D> body);
+
+    /// Adds a force (N) that acts through the next step, at the centre of mass.
+    void apply_force(BodyId<D> body, const Vec<D>& force);
+    /// Adds a force at a point p of the world; its torque is (p − centre of mass) × force.
+    void apply_force(BodyId<D> body, const Vec<D>& force, const Vec<D>& point);
+    /// Adds a torque (N·m) that acts through the next step.
+    void apply_torque(BodyId<D> body, const Angular<D>& torque);
+    /// Changes the velocity at once by impulse / mass; with a point of the world also the spin.
+    void apply_impulse(BodyId<D> body, const Vec<D>& impulse);
+    void apply_impulse(BodyId<D> body, const Vec<D>& impulse, const Vec<D>& point);
+    void apply_angular_impulse(BodyId<D> body, const Angular<D>& impulse);
+
+    /// The bodies that moved in the last step, for a game that copies placements into its own objects.
+    std::span<const MovedBody<D>> moved_bodies() const;
+    /// The contacts of the last step that carry points, in a reproducible order.
+    std::vector<Contact<D>> contacts() const;
+    /// Bodies whose state turned non-finite in the last step: they were put back to their last finite state
+    /// and disabled, and the rest goes on.
+    std::span<const BodyId<D>> quarantined() const;
+
+    Counts counts() const;
+    Energy energy() const;
+    /// Kinetic and gravitational energy of one body.
+    Energy energy(BodyId<D> body) const;
+    /// A hash of all that the next step depends on: equal hashes, equal futures.
+    std::uint64_t hash() const;
+
+  private:
+    std::unique_ptr<detail::WorldState<D>> state_;
+};
+
+using World2 = World<2>;
+using World3 = World<3>;
+
+}  // namespace carom

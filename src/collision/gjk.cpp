@@ -1,0 +1,167 @@
+#include "collision/gjk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom::detail {
+
+namespace {
+
+/// Cores closer than this, as a share of the difference's extent, count as touching: rounding leaves no
+/// direction to be told from a shorter vector.
+constexpr double touching = 1e-13;
+/// A simplex of less than this share of its extent's area or volume is flat, and its inside is not asked for.
+constexpr double flat = 1e-14;
+
+template <int D>
+struct Simplex {
+    std::array<SimplexVertex<D>, D + 1> vertices{};
+    std::array<double, D + 1> weights{};  ///< of the point closest to the origin
+    int count = 0;
+    Vec<D> closest{};
+
+    const Vec<D>& operator[](int i) const { return vertices[i].difference; }
+};
+
+double determinant(const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); }
+
+/// Scales the weights to a sum of one. False when not all of them have the sign of their sum: then the point
+/// that they stand for is outside.
+template <int D>
+bool normalize_weights(Simplex<D>& s, double least_sum) {
+    double sum = 0;
+    for (int i = 0; i < s.count; ++i) sum += s.weights[i];
+    if (!(std::fabs(sum) > least_sum)) return false;
+    for (int i = 0; i < s.count; ++i) {
+        s.weights[i] /= sum;
+        if (!(s.weights[i] >= 0)) return false;
+    }
+    return true;
+}
+
+/// Finds the weights of the point nearest to the origin in the flat that the vertices span, and tells if it
+/// lies within the simplex. They are ratios of lengths, areas or volumes, not of Gram determinants, which
+/// would square the error of a thin simplex.
+template <int D>
+bool solve_whole(Simplex<D>& s) {
+    double extent = 0;
+    for (int i = 0; i < s.count; ++i) extent = std::max(extent, length(s[i]));
+    switch (s.count) {
+        case 1:
+            s.weights[0] = 1;
+            break;
+        case 2: {
+            const Vec<D> edge = s[1] - s[0];
+            s.weights[0] = dot(s[1], edge);
+            s.weights[1] = -dot(s[0], edge);
+            if (!normalize_weights(s, 0)) return false;
+            break;
+        }
+        case 3:
+            if constexpr (D == 2) {
+                s.weights = {cross(s[1], s[2]), cross(s[2], s[0]), cross(s[0], s[1])};
+                s.closest = {};
+                return normalize_weights(s, flat * extent * extent);
+            } else {
+                const Vec3 normal = cross(s[1] - s[0], s[2] - s[0]);
+                s.weights = {determinant(normal, s[1], s[2]), determinant(normal, s[2], s[0]),
+                             determinant(normal, s[0], s[1]), 0};
+                if (!normalize_weights(s, 0)) return false;
+            }
+            break;
+        case 4:
+            if constexpr (D == 3) {
+                s.weights = {determinant(s[1], s[2], s[3]), -determinant(s[0], s[2], s[3]),
+                             determinant(s[0], s[1], s[3]), -determinant(s[0], s[1], s[2])};
+                s.closest = {};
+                return normalize_weights(s, flat * extent * extent * extent);
+            }
+    }
+    s.closest = {};
+    for (int i = 0; i < s.count; ++i) s.closest += s.weights[i] * s[i];
+    return true;
+}
+
+/// The smallest part of the simplex that holds its point closest to the origin. Only parts with the newest
+/// vertex come into question, as the closest point of the rest is known and further away.
+template <int D>
+Simplex<D> reduce(const Simplex<D>& whole) {
+    Simplex<D> best;
+    double best_square = 0;
+    const int newest = whole.count - 1;
+    for (int part = 0; part < 1 << newest; ++part) {
+        Simplex<D> s;
+        for (int i = 0; i < newest; ++i)
+            if (part >> i & 1) s.vertices[s.count++] = whole.vertices[i];
+        s.vertices[s.count++] = whole.vertices[newest];
+        if (!solve_whole(s)) continue;
+        const double square = s.count > D ? 0 : length_squared(s.closest);
+        if (best.count == 0 || square < best_square) {
+            best = s;
+            best_square = square;
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+template <int D>
+SimplexVertex<D> difference_support(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a,
+                                    const Vec<D>& direction) {
+    const Vec<D> on_a = core_support(a, direction);
+    const Vec<D> on_b = apply(b_in_a, core_support(b, unrotate(b_in_a.rotation, -direction)));
+    return {on_a, on_b, on_a - on_b};
+}
+
+template <int D>
+CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a) {
+    constexpr int most_steps = 100;
+    constexpr double precision = 1e-15;
+    Vec<D> start = b_in_a.position;
+    if (!(length_squared(start) > 0)) start.x = 1;
+
+    Simplex<D> simplex;
+    simplex.vertices[0] = difference_support(a, b, b_in_a, start);
+    simplex.count = 1;
+    simplex = reduce(simplex);
+    double extent = length(simplex[0]);
+    double distance = extent;
+    for (int step = 0; step < most_steps && simplex.count <= D && distance > touching * extent; ++step) {
+        const Vec<D> axis = simplex.closest / -distance;
+        const SimplexVertex<D> next = difference_support(a, b, b_in_a, axis);
+        extent = std::max(extent, length(next.difference));
+        // The cores are at least −axis · next apart.
+        if (dot(axis, next.difference - simplex.closest) <= precision * extent) break;
+        Simplex<D> larger = simplex;
+        larger.vertices[larger.count++] = next;
+        larger = reduce(larger);
+        const double nearer = larger.count > D ? 0 : length(larger.closest);
+        if (!(nearer < distance)) break;
+        simplex = larger;
+        distance = nearer;
+    }
+
+    CoreDistance<D> result;
+    for (int i = 0; i < simplex.count; ++i) {
+        result.on_a += simplex.weights[i] * simplex.vertices[i].on_a;
+        result.on_b += simplex.weights[i] * simplex.vertices[i].on_b;
+    }
+    result.overlap = simplex.count > D || distance <= touching * extent;
+    if (!result.overlap) {
+        result.distance = distance;
+        result.axis = simplex.closest / -distance;
+    }
+    result.simplex = simplex.vertices;
+    result.count = simplex.count;
+    return result;
+}
+
+template SimplexVertex<2> difference_support(const Shape<2>&, const Shape<2>&, const Transform<2>&,
+                                             const Vec<2>&);
+template SimplexVertex<3> difference_support(const Shape<3>&, const Shape<3>&, const Transform<3>&,
+                                             const Vec<3>&);
+template CoreDistance<2> core_distance(const Shape<2>&, const Shape<2>&, const Transform<2>&);
+template CoreDistance<3> core_distance(const Shape<3>&, const Shape<3>&, const Transform<3>&);
+
+}  // namespace carom::detail

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+
+#include "carom/collide.hpp"
+#include "geometry/shape.hpp"
+
+namespace carom::detail {
+
+// Collision of two shapes, each in the frame of its body. Everything happens in the frame of a's body, in
+// which b's body is placed by `b_in_a`: what matters is near the origin, wherever the bodies are in the
+// world.
+
+/// The contact manifold of two shapes in the frame of a's body: its normal points from a to b, a point lies
+/// midway between the two surfaces, and `separation` is the gap there along the normal. It is empty when the
+/// gap between the shapes is larger than `reach` (m, not negative) and for two planes. The kinds may come in
+/// either order; the feature ids of a pair of shapes are the same in both.
+template <int D>
+Manifold<D> collide_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach);
+
+/// Where the shapes are apart: the direction from a to b between their closest points, and the gap. Where
+/// they overlap: the direction in which b has the shortest way out of a, and minus the length of that way.
+/// Nothing for two planes.
+template <int D>
+std::optional<Separation<D>> separate_shapes(const Shape<D>& a, const Shape<D>& b,
+                                             const Transform<D>& b_in_a);
+
+/// The two questions above for one pair of kinds: an entry of the shape-pair matrix.
+template <int D>
+struct PairRoutines {
+    Manifold<D> (*collide)(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach);
+    std::optional<Separation<D>> (*separate)(const Shape<D>& a, const Shape<D>& b,
+                                             const Transform<D>& b_in_a);
+};
+
+/// The entry of the shape-pair matrix (matrix_2.cpp, matrix_3.cpp) for a <= b, the order of `ShapeKind`.
+template <int D>
+const PairRoutines<D>& pair_routines(ShapeKind a, ShapeKind b);
+template <>
+const PairRoutines<2>& pair_routines<2>(ShapeKind a, ShapeKind b);
+template <>
+const PairRoutines<3>& pair_routines<3>(ShapeKind a, ShapeKind b);
+
+/// The placement that undoes `t`.
+template <int D>
+constexpr Transform<D> inverse(const Transform<D>& t) {
+    return relative(t, Transform<D>{});
+}
+
+/// The manifold carried from the frame that `t` places to the outer frame.
+template <int D>
+Manifold<D> moved(Manifold<D> manifold, const Transform<D>& t) {
+    manifold.normal = rotate(t.rotation, manifold.normal);
+    for (int i = 0; i < manifold.count; ++i)
+        manifold.points[i].position = apply(t, manifold.points[i].position);
+    return manifold;
+}
+
+/// The manifold of two shapes seen with the shapes exchanged, in the same frame.
+template <int D>
+Manifold<D> exchanged(Manifold<D> manifold) {
+    manifold.normal = -manifold.normal;
+    return manifold;
+}
+
+}  // namespace carom::detail

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+
+#include "collision/epa_3.hpp"
+#include "collision/manifold/nearest_3.hpp"
+
+namespace carom::detail {
+
+namespace {
+
+bool is_revolved(const Shape<3>& shape) {
+    return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
+}
+
+/// Keeps the direction of the widest gap. Only the half of the directions that point from a to b can have it.
+class Candidates {
+  public:
+    explicit Candidates(const Pair3& pair) : pair_(pair) {}
+
+    void offer(const Vec3& normal) {
+        const double gap = gap_along(pair_, normal).distance;
+        if (gap > widest_.distance) widest_ = {normal, gap};
+    }
+    void offer_both(const Vec3& axis) {
+        if (length_squared(axis) <= 1e-12) return;
+        offer(normalized(axis));
+        offer(-normalized(axis));
+    }
+    const Gap3& widest() const { return widest_; }
+
+  private:
+    const Pair3& pair_;
+    Gap3 widest_;
+};
+
+/// Offers the normals of the flat faces of one of the shapes; `sign` is +1 for a, −1 for b.
+void offer_faces(Candidates& candidates, const Shape<3>& shape, const Rotation3& turn, double sign) {
+    if (shape.kind == ShapeKind::cone) {
+        candidates.offer(-sign * rotate(turn, shape.b));
+    } else if (shape.kind == ShapeKind::cylinder) {
+        candidates.offer_both(rotate(turn, shape.b));
+    } else if (shape.core) {
+        for (const Vec3& normal : shape.core->normals) candidates.offer(sign * rotate(turn, normal));
+    }
+}
+
+/// Directions in which such shapes often rest on each other: along flat faces, across two axes, and straight away
+/// from an axis.
+Gap3 likely_gap(const Pair3& pair) {
+    Candidates candidates(pair);
+    const Rotation3& turn = pair.b_in_a.rotation;
+    offer_faces(candidates, pair.a, {}, 1);
+    offer_faces(candidates, pair.b, turn, -1);
+    const Vec3 axis_b = rotate(turn, pair.b.b), axis_a = is_revolved(pair.a) ? pair.a.b : pair.a.b - pair.a.a;
+    const Vec3 apart = apply(pair.b_in_a, pair.b.a) - pair.a.a;
+    if (pair.a.kind != ShapeKind::box && pair.a.kind != ShapeKind::hull) candidates.offer_both(cross(axis_a, axis_b));
+    candidates.offer_both(apart - dot(apart, axis_b) * axis_b);
+    return candidates.widest();
+}
+
+/// Sharpens the direction of the widest gap of cores that overlap a little. With b moved out along the direction
+/// until the cores are apart, their closest points give a better one: the error shrinks each time by about depth
+/// over radius of curvature. Where flat faces meet, the first step is exact.
+Nearest3 sharpened(const Pair3& pair, const Gap3& start, double extent) {
+    Nearest3 best = gap_along(pair, start.normal);
+    const double clearance = std::max(std::fabs(best.distance), 1e-4 * extent);
+    for (int i = 0; i < 16; ++i) {
+        const Vec3 shift = (clearance - best.distance) * best.normal;
+        const Transform3 moved{pair.b_in_a.position + shift, pair.b_in_a.rotation};
+        const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, moved);
+        if (found.overlap) break;
+        if (i == 0) {
+            best.on_a = found.on_a;
+            best.on_b = found.on_b - shift;
+        }
+        const double gap = gap_along(pair, found.axis).distance;
+        if (gap <= best.distance) break;
+        const bool settled = gap <= best.distance + 1e-14 * extent;
+        best = {found.axis, gap, found.on_a, found.on_b - shift};
+        if (settled) break;
+    }
+    return best;
+}
+
+}  // namespace
+
+Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
+    const double extent = is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
+    const Gap3 likely = likely_gap(pair);
+    if (likely.distance > search.limit) return gap_along(pair, likely.normal);
+
+    const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, pair.b_in_a);
+    const bool apart = !found.overlap && found.distance > 1e-4 * extent;
+    if (apart && found.distance > likely.distance + 1e-9 * extent)
+        return {found.axis, found.distance, found.on_a, found.on_b};
+    if (apart) return {likely.normal, likely.distance, found.on_a, found.on_b};
+
+    Gap3 widest = likely;
+    if (found.overlap) {
+        widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely, 1e-7 * extent);
+    } else if (found.distance > likely.distance + 1e-9 * extent) {
+        widest = {found.axis, found.distance};
+    }
+    return sharpened(pair, widest, extent);
+}
+
+}  // namespace carom::detail

@@ -1,0 +1,50 @@
+#include <limits>
+
+#include "collision/manifold/patch_3.hpp"
+
+namespace carom::detail {
+
+namespace {
+
+template <NearestRoutine3 nearest>
+Manifold<3> collide(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a, double reach) {
+    const Pair3 pair{a, b, b_in_a};
+    const double limit = reach + core_radius(a) + core_radius(b);
+    const Nearest3 found = nearest(pair, {limit, true});
+    return found.distance > limit ? Manifold<3>{} : contact_patch(pair, found, reach);
+}
+
+template <NearestRoutine3 nearest>
+std::optional<Separation<3>> separate(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a) {
+    const Pair3 pair{a, b, b_in_a};
+    Nearest3 found = nearest(pair, {std::numeric_limits<double>::infinity(), false});
+    if (!found.certain) found = closest_points(pair, found);
+    return Separation<3>{found.normal, found.distance - core_radius(a) - core_radius(b)};
+}
+
+template <NearestRoutine3 nearest>
+constexpr PairRoutines<3> by{collide<nearest>, separate<nearest>};
+constexpr PairRoutines<3> none{};  // two planes
+constexpr PairRoutines<3> swap{};  // looked up with the shapes exchanged
+
+// clang-format off
+constexpr PairRoutines<3> matrix[7][7] = {
+// a \ b       ball             capsule              box                     hull                       cylinder            cone                plane
+/* ball */     {by<point_point>, by<point_segment>,   by<point_box>,          by<point_polyhedron>,      by<point_revolved>, by<point_revolved>, by<core_plane>},
+/* capsule */  {swap,            by<segment_segment>, by<segment_polyhedron>, by<segment_polyhedron>,    by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* box */      {swap,            swap,                by<box_box>,            by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* hull */     {swap,            swap,                swap,                   by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* cylinder */ {swap,            swap,                swap,                   swap,                      by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* cone */     {swap,            swap,                swap,                   swap,                      swap,               by<core_revolved>,  by<core_plane>},
+/* plane */    {swap,            swap,                swap,                   swap,                      swap,               swap,               none},
+};
+// clang-format on
+
+}  // namespace
+
+template <>
+const PairRoutines<3>& pair_routines<3>(ShapeKind a, ShapeKind b) {
+    return matrix[static_cast<int>(a)][static_cast<int>(b)];
+}
+
+}  // namespace carom::detail

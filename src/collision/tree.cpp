@@ -1,0 +1,351 @@
+#include "collision/tree.hpp"
+
+#include <cassert>
+#include <limits>
+
+namespace carom::detail {
+
+namespace {
+
+/// A stretch of the leaves of a tree being built; its node is to become `child[side]` of `parent`.
+struct Part {
+    std::size_t begin, end;
+    std::int32_t parent;
+    int side;
+};
+
+}  // namespace
+
+template <int D>
+std::int32_t Tree<D>::allocate() {
+    if (first_free_ == none) {
+        nodes_.emplace_back();
+        return std::int32_t(nodes_.size()) - 1;
+    }
+    const std::int32_t node = first_free_;
+    first_free_ = nodes_[node].parent;
+    nodes_[node] = Node{};
+    return node;
+}
+
+template <int D>
+void Tree<D>::free(std::int32_t node) {
+    nodes_[node] = Node{};
+    nodes_[node].height = -1;
+    nodes_[node].parent = first_free_;
+    first_free_ = node;
+}
+
+template <int D>
+std::int32_t Tree<D>::insert(const Aabb<D>& box, std::uint32_t payload) {
+    const std::int32_t leaf = allocate();
+    nodes_[leaf].box = box;
+    nodes_[leaf].child[1] = std::int32_t(payload);
+    attach(leaf);
+    ++leaf_count_;
+    return leaf;
+}
+
+template <int D>
+void Tree<D>::remove(std::int32_t leaf) {
+    detach(leaf);
+    free(leaf);
+    --leaf_count_;
+}
+
+template <int D>
+void Tree<D>::move(std::int32_t leaf, const Aabb<D>& box) {
+    assert(nodes_[leaf].height == 0 && nodes_[leaf].leaf());
+    const std::int32_t parent = nodes_[leaf].parent;
+    // While the parent holds the new box, no better place is to be expected.
+    const bool stays = parent == none || contains(nodes_[parent].box, box);
+    if (!stays) detach(leaf);
+    nodes_[leaf].box = box;
+    if (stays)
+        refit_upwards(parent, false);
+    else
+        attach(leaf);
+}
+
+template <int D>
+void Tree<D>::clear() {
+    *this = Tree{};
+}
+
+/// The node that, taken together with a new leaf of that box under a new parent, adds the least surface to
+/// the tree: that of the new parent and what all its ancestors grow by.
+template <int D>
+std::int32_t Tree<D>::best_sibling(const Aabb<D>& box) {
+    struct Candidate {
+        std::int32_t node;
+        double growth;  ///< what the node's ancestors grow by
+    };
+    const double leaf_surface = half_surface(box);
+    std::int32_t best = root_;
+    double best_cost = std::numeric_limits<double>::infinity();
+    WalkStack<Candidate> stack;
+    stack.push({root_, 0});
+    while (!stack.empty()) {
+        const Candidate candidate = stack.pop();
+        // Nothing beneath can cost less than the leaf's own surface on top of the ancestors' growth.
+        if (candidate.growth + leaf_surface >= best_cost) continue;
+        const Node& node = nodes_[candidate.node];
+        const double surface = half_surface(merged(node.box, box));
+        if (surface + candidate.growth < best_cost) {
+            best_cost = surface + candidate.growth;
+            best = candidate.node;
+        }
+        const double growth = candidate.growth + surface - half_surface(node.box);
+        if (node.leaf() || growth + leaf_surface >= best_cost) continue;
+        // The child that grows less goes last on the stack, so it is looked at first and the bound falls
+        // early.
+        const auto growth_of = [&](std::int32_t child) {
+            return half_surface(merged(nodes_[child].box, box)) - half_surface(nodes_[child].box);
+        };
+        const bool second_first = growth_of(node.child[1]) < growth_of(node.child[0]);
+        stack.push({node.child[second_first ? 0 : 1], growth});
+        stack.push({node.child[second_first ? 1 : 0], growth});
+    }
+    return best;
+}
+
+template <int D>
+void Tree<D>::replace_child(std::int32_t parent, std::int32_t child, std::int32_t by) {
+    nodes_[by].parent = parent;
+    if (parent == none)
+        root_ = by;
+    else
+        nodes_[parent].child[nodes_[parent].child[1] == child] = by;
+}
+
+template <int D>
+void Tree<D>::attach(std::int32_t leaf) {
+    nodes_[leaf].parent = none;
+    if (root_ == none) {
+        root_ = leaf;
+        return;
+    }
+    const std::int32_t sibling = best_sibling(nodes_[leaf].box);
+    const std::int32_t joint = allocate();
+    replace_child(nodes_[sibling].parent, sibling, joint);
+    nodes_[joint].child[0] = sibling;
+    nodes_[joint].child[1] = leaf;
+    nodes_[sibling].parent = joint;
+    nodes_[leaf].parent = joint;
+    refit_upwards(joint, true);
+}
+
+template <int D>
+void Tree<D>::detach(std::int32_t leaf) {
+    assert(nodes_[leaf].height == 0 && nodes_[leaf].leaf());
+    const std::int32_t parent = nodes_[leaf].parent;
+    if (parent == none) {
+        root_ = none;
+        return;
+    }
+    const std::int32_t sibling = nodes_[parent].child[nodes_[parent].child[0] == leaf];
+    const std::int32_t above = nodes_[parent].parent;
+    replace_child(above, parent, sibling);
+    free(parent);
+    refit_upwards(above, false);
+}
+
+template <int D>
+void Tree<D>::enclose_children(std::int32_t index) {
+    Node& node = nodes_[index];
+    const Node& left = nodes_[node.child[0]];
+    const Node& right = nodes_[node.child[1]];
+    node.box = merged(left.box, right.box);
+    node.height = 1 + std::max(left.height, right.height);
+}
+
+/// Swaps a child with a child of its sibling where that makes the sibling smaller.
+template <int D>
+void Tree<D>::rotate_at(std::int32_t index) {
+    double best_gain = 0;
+    int best_side = 0, best_grandchild = 0;
+    for (int side = 0; side < 2; ++side) {
+        const Node& child = nodes_[nodes_[index].child[side]];
+        const Node& sibling = nodes_[nodes_[index].child[1 - side]];
+        if (sibling.leaf()) continue;
+        for (int k = 0; k < 2; ++k) {
+            const Node& stays = nodes_[sibling.child[1 - k]];
+            const double gain = half_surface(sibling.box) - half_surface(merged(child.box, stays.box));
+            if (gain > best_gain) {
+                best_gain = gain;
+                best_side = side;
+                best_grandchild = k;
+            }
+        }
+    }
+    if (!(best_gain > 0)) return;
+    const std::int32_t child = nodes_[index].child[best_side];
+    const std::int32_t sibling = nodes_[index].child[1 - best_side];
+    const std::int32_t grandchild = nodes_[sibling].child[best_grandchild];
+    nodes_[index].child[best_side] = grandchild;
+    nodes_[grandchild].parent = index;
+    nodes_[sibling].child[best_grandchild] = child;
+    nodes_[child].parent = sibling;
+    enclose_children(sibling);
+    enclose_children(index);
+}
+
+template <int D>
+void Tree<D>::refit_upwards(std::int32_t node, bool rotate) {
+    for (; node != none; node = nodes_[node].parent) {
+        enclose_children(node);
+        if (rotate) rotate_at(node);
+    }
+}
+
+template <int D>
+void Tree<D>::build(std::span<const Entry> entries) {
+    clear();
+    leaf_count_ = std::int32_t(entries.size());
+    nodes_.reserve(2 * entries.size());
+    std::vector<std::int32_t> leaves;
+    for (const Entry& entry : entries) {
+        leaves.push_back(allocate());
+        nodes_.back().box = entry.box;
+        nodes_.back().child[1] = std::int32_t(entry.payload);
+    }
+    build_inner(leaves);
+}
+
+template <int D>
+void Tree<D>::rebuild() {
+    std::vector<std::int32_t> leaves;
+    for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
+        if (nodes_[i].height == 0)
+            leaves.push_back(i);
+        else if (nodes_[i].height > 0)
+            free(i);
+    }
+    build_inner(leaves);
+}
+
+template <int D>
+void Tree<D>::build_inner(std::vector<std::int32_t>& leaves) {
+    root_ = none;
+    if (leaves.empty()) return;
+    std::vector<std::int32_t> inner;
+    std::vector<Part> parts{{0, leaves.size(), none, 0}};
+    while (!parts.empty()) {
+        const Part part = parts.back();
+        parts.pop_back();
+        const bool single = part.end - part.begin == 1;
+        const std::int32_t node = single ? leaves[part.begin] : allocate();
+        nodes_[node].parent = part.parent;
+        if (part.parent == none)
+            root_ = node;
+        else
+            nodes_[part.parent].child[part.side] = node;
+        if (single) continue;
+        inner.push_back(node);
+        const std::size_t middle =
+            part.begin + split(std::span(leaves).subspan(part.begin, part.end - part.begin));
+        parts.push_back({middle, part.end, node, 1});
+        parts.push_back({part.begin, middle, node, 0});
+    }
+    // Every node was made before its children.
+    for (auto node = inner.rbegin(); node != inner.rend(); ++node) enclose_children(*node);
+}
+
+/// Orders the leaves so that the first ones, as many as it returns, make one half and the rest the other, at
+/// the least of (number · surface) summed over both, tried at the borders of equal bins of the centres.
+template <int D>
+std::size_t Tree<D>::split(std::span<std::int32_t> leaves) const {
+    constexpr int bin_count = 16;
+    struct Bin {
+        Aabb<D> box{};
+        std::size_t count = 0;
+
+        void add(const Aabb<D>& other, std::size_t n) {
+            box = count ? merged(box, other) : other;
+            count += n;
+        }
+        double cost() const { return double(count) * half_surface(box); }
+    };
+    const auto center = [&](std::int32_t leaf) {
+        return 0.5 * (nodes_[leaf].box.lower + nodes_[leaf].box.upper);
+    };
+
+    Aabb<D> centers{center(leaves[0]), center(leaves[0])};
+    for (const std::int32_t leaf : leaves) centers = merged(centers, Aabb<D>{center(leaf), center(leaf)});
+    const Vec<D> size = centers.upper - centers.lower;
+    int axis = 0;
+    for (int i = 1; i < D; ++i)
+        if (size[i] > size[axis]) axis = i;
+    if (!(size[axis] > 0)) return leaves.size() / 2;
+
+    const auto bin_of = [&](std::int32_t leaf) {
+        return std::min(bin_count - 1,
+                        int((center(leaf)[axis] - centers.lower[axis]) / size[axis] * bin_count));
+    };
+    std::array<Bin, bin_count> bins{};
+    for (const std::int32_t leaf : leaves) bins[bin_of(leaf)].add(nodes_[leaf].box, 1);
+
+    std::array<double, bin_count> cost{};  // of a border before bin i
+    Bin left, right;
+    for (int i = 1; i < bin_count; ++i) {
+        if (bins[i - 1].count) left.add(bins[i - 1].box, bins[i - 1].count);
+        cost[i] += left.cost();
+    }
+    for (int i = bin_count - 1; i > 0; --i) {
+        if (bins[i].count) right.add(bins[i].box, bins[i].count);
+        cost[i] += right.cost();
+    }
+    // The outermost bins hold a leaf each, so no border leaves a side empty.
+    const int border = int(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
+    std::size_t middle = 0;
+    for (std::int32_t& leaf : leaves)
+        if (bin_of(leaf) < border) std::swap(leaf, leaves[middle++]);
+    return middle;
+}
+
+template <int D>
+double Tree<D>::cost() const {
+    if (root_ == none) return 0;
+    double sum = 0;
+    for (const Node& node : nodes_)
+        if (node.height > 0) sum += half_surface(node.box);
+    return sum / half_surface(nodes_[root_].box);
+}
+
+template <int D>
+bool Tree<D>::validate() const {
+    std::size_t used = 0;
+    std::int32_t leaves = 0;
+    WalkStack<std::int32_t> stack;
+    if (root_ != none) {
+        if (nodes_[root_].parent != none) return false;
+        stack.push(root_);
+    }
+    while (!stack.empty() && used++ < nodes_.size()) {
+        const std::int32_t index = stack.pop();
+        const Node& node = nodes_[index];
+        if (node.leaf()) {
+            if (node.height != 0) return false;
+            ++leaves;
+            continue;
+        }
+        const Node& left = nodes_[node.child[0]];
+        const Node& right = nodes_[node.child[1]];
+        const Aabb<D> box = merged(left.box, right.box);
+        if (left.parent != index || right.parent != index) return false;
+        if (box.lower != node.box.lower || box.upper != node.box.upper) return false;
+        if (node.height != 1 + std::max(left.height, right.height)) return false;
+        stack.push(node.child[0]);
+        stack.push(node.child[1]);
+    }
+    std::size_t unused = 0;
+    for (std::int32_t node = first_free_; node != none && unused++ < nodes_.size();
+         node = nodes_[node].parent)
+        if (nodes_[node].height != -1) return false;
+    return stack.empty() && leaves == leaf_count_ && used + unused == nodes_.size();
+}
+
+template class Tree<2>;
+template class Tree<3>;
+
+}  // namespace carom::detail

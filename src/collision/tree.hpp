@@ -1,0 +1,166 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collision/box.hpp"
+
+namespace carom::detail {
+
+/// The stack of a walk through a tree: in place while it is short, as it nearly always is.
+template <class T>
+class WalkStack {
+  public:
+    bool empty() const { return count_ == 0; }
+    void push(const T& value) {
+        if (count_ < here_.size())
+            here_[count_] = value;
+        else
+            beyond_.push_back(value);
+        ++count_;
+    }
+    T pop() {
+        --count_;
+        if (count_ < here_.size()) return here_[count_];
+        const T value = beyond_.back();
+        beyond_.pop_back();
+        return value;
+    }
+
+  private:
+    std::array<T, 128> here_;
+    std::vector<T> beyond_;
+    std::size_t count_ = 0;
+};
+
+/// A binary tree of boxes that finds what overlaps what. Every leaf carries a number of the caller's. The
+/// caller makes the boxes as fat as suits it. Inserting looks for the place that adds the least surface to
+/// the tree (branch and bound; Bittner, Hapala, Havran: Incremental BVH Construction, 2015), and swaps
+/// neighbours where that lessens it (Kopta et al.: Fast, Effective BVH Updates for Animated Scenes, 2012).
+/// The shape of the tree and the order of answers depend on nothing but the sequence of calls.
+template <int D>
+class Tree {
+  public:
+    static constexpr std::int32_t none = -1;
+
+    struct Entry {
+        Aabb<D> box;
+        std::uint32_t payload;
+    };
+
+    /// Adds a leaf and returns its index, which stays valid until the leaf is removed.
+    std::int32_t insert(const Aabb<D>& box, std::uint32_t payload);
+    void remove(std::int32_t leaf);
+    /// Gives the leaf another box.
+    void move(std::int32_t leaf, const Aabb<D>& box);
+
+    void clear();
+    /// Replaces all by a tree built at once: entry i becomes leaf i (Wald: On fast Construction of SAH-based
+    /// Bounding Volume Hierarchies, 2007).
+    void build(std::span<const Entry> entries);
+    /// Builds the tree anew over the leaves that it has; they keep their indices.
+    void rebuild();
+
+    const Aabb<D>& box(std::int32_t leaf) const { return nodes_[leaf].box; }
+    std::uint32_t payload(std::int32_t leaf) const { return std::uint32_t(nodes_[leaf].child[1]); }
+    /// Number of leaves.
+    std::int32_t size() const { return leaf_count_; }
+    /// Length of the longest path from the root to a leaf; zero for one leaf or none.
+    std::int32_t height() const { return root_ == none ? 0 : nodes_[root_].height; }
+
+    /// Calls `visit(payload)` for every leaf whose box overlaps `box`.
+    template <class Visitor>
+    void query(const Aabb<D>& box, Visitor&& visit) const;
+    /// Calls `visit(payload, other_payload)` for every overlapping pair of a leaf here and a leaf of `other`.
+    /// With the tree itself as `other` it visits every pair of two different leaves once.
+    template <class Visitor>
+    void query_pairs(const Tree& other, Visitor&& visit) const;
+
+    /// Sum of the inner boxes' surfaces over the root's: how many nodes a small query visits on average.
+    double cost() const;
+    /// Are all links, boxes, heights and counts consistent?
+    bool validate() const;
+
+  private:
+    /// A leaf has child[0] == none and its payload in child[1]. A free node has height −1 and in `parent` the
+    /// next free node.
+    struct Node {
+        Aabb<D> box{};
+        std::int32_t parent = none;
+        std::int32_t child[2] = {none, none};
+        std::int32_t height = 0;
+
+        bool leaf() const { return child[0] == none; }
+    };
+
+    std::int32_t allocate();
+    void free(std::int32_t node);
+    std::int32_t best_sibling(const Aabb<D>& box);
+    void attach(std::int32_t leaf);
+    void detach(std::int32_t leaf);
+    void replace_child(std::int32_t parent, std::int32_t child, std::int32_t by);
+    void enclose_children(std::int32_t node);
+    void rotate_at(std::int32_t node);
+    void refit_upwards(std::int32_t node, bool rotate);
+    void build_inner(std::vector<std::int32_t>& leaves);
+    std::size_t split(std::span<std::int32_t> leaves) const;
+
+    std::vector<Node> nodes_;
+    std::int32_t root_ = none;
+    std::int32_t first_free_ = none;
+    std::int32_t leaf_count_ = 0;
+};
+
+template <int D>
+template <class Visitor>
+void Tree<D>::query(const Aabb<D>& box, Visitor&& visit) const {
+    if (root_ == none) return;
+    WalkStack<std::int32_t> stack;
+    stack.push(root_);
+    while (!stack.empty()) {
+        const Node& node = nodes_[stack.pop()];
+        if (!overlaps(node.box, box)) continue;
+        if (node.leaf()) {
+            visit(std::uint32_t(node.child[1]));
+        } else {
+            stack.push(node.child[1]);
+            stack.push(node.child[0]);
+        }
+    }
+}
+
+template <int D>
+template <class Visitor>
+void Tree<D>::query_pairs(const Tree& other, Visitor&& visit) const {
+    if (root_ == none || other.root_ == none) return;
+    struct Pair {
+        std::int32_t a, b;
+    };
+    WalkStack<Pair> stack;
+    stack.push({root_, other.root_});
+    while (!stack.empty()) {
+        const Pair pair = stack.pop();
+        const Node& a = nodes_[pair.a];
+        const Node& b = other.nodes_[pair.b];
+        if (this == &other && pair.a == pair.b) {
+            if (a.leaf()) continue;
+            stack.push({a.child[0], a.child[1]});
+            stack.push({a.child[1], a.child[1]});
+            stack.push({a.child[0], a.child[0]});
+        } else if (!overlaps(a.box, b.box)) {
+            continue;
+        } else if (a.leaf() && b.leaf()) {
+            visit(std::uint32_t(a.child[1]), std::uint32_t(b.child[1]));
+        } else if (b.leaf() || (!a.leaf() && half_surface(a.box) >= half_surface(b.box))) {
+            stack.push({a.child[1], pair.b});
+            stack.push({a.child[0], pair.b});
+        } else {
+            stack.push({pair.a, b.child[1]});
+            stack.push({pair.a, b.child[0]});
+        }
+    }
+}
+
+}  // namespace carom::detail

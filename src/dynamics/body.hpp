@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "carom/body.hpp"
+#include "math/dim.hpp"
+
+namespace carom::detail {
+
+/// Where a body is and how it moves. All `double`, so that a free flight is exact to rounding and far away
+/// is as good as near.
+template <int D>
+struct BodyState {
+    Vec<D> position{};  ///< centre of mass in the world
+    Rotation<D> rotation{};
+    Vec<D> velocity{};
+    Angular<D> angular_velocity{};
+    std::int32_t turns = 0;  ///< 2D: whole turns that `rotation` does not show
+};
+
+/// What a body's motion depends on beside its state.
+template <int D>
+struct BodyMass {
+    double mass = 0;          ///< 0 unless dynamic
+    double inverse_mass = 0;  ///< 0 unless dynamic
+    Vec<D> center{};          ///< centre of mass in the body's frame
+    Inertia<D> inertia{};     ///< in the body's frame, about the centre of mass
+    Inertia<D> inverse_inertia{};
+    double radius = 0;         ///< of a ball about the centre of mass that holds every shape
+    double cross_section = 0;  ///< of a ball of the same measure as the shapes (see `Wind`)
+    double gravity_scale = 1;
+    double linear_damping = 0;
+    double angular_damping = 0;
+    Locks locks{};
+    bool isotropic = true;  ///< the inertia is the same about every axis: rotation does not precess
+    bool locked = false;    ///< any of `locks`
+};
+
+/// Force and torque (about the centre of mass) that act on a body through a step.
+template <int D>
+struct Load {
+    Vec<D> force{};
+    Angular<D> torque{};
+};
+
+/// What else the world knows of a body.
+template <int D>
+struct BodyInfo {
+    BodyType type = BodyType::dynamic;
+    bool awake = true;
+    bool can_sleep = true;
+    bool bullet = false;
+    bool disabled = false;         ///< quarantined: it stays where it is and nothing touches it
+    bool mass_overridden = false;  ///< `mass` and so on were given by the user and do not follow the shapes
+    double rest_time = 0;          ///< how long it has been slow and in its place, s
+    Transform<D> rest{};           ///< that place: centre of mass and rotation when the rest began
+    std::vector<ShapeId<D>> shapes;
+    BodyDefinition<D> definition;  ///< as given, without the shapes: overrides, name and user data
+};
+
+/// Placement of the body's frame.
+template <int D>
+Transform<D> frame(const BodyState<D>& state, const BodyMass<D>& mass) {
+    return {state.position - rotate(state.rotation, mass.center), state.rotation};
+}
+
+/// Inverse inertia tensor in the world's axes, zero about the locked ones.
+template <int D>
+Inertia<D> world_inverse_inertia(const BodyMass<D>& mass, const Rotation<D>& rotation);
+
+/// The vector with its locked components set to zero.
+template <int D>
+Vec<D> free_components(const Locks& locks, Vec<D> v) {
+    if (locks.x) v.x = 0;
+    if (locks.y) v.y = 0;
+    if constexpr (D == 3) {
+        if (locks.z) v.z = 0;
+    }
+    return v;
+}
+template <int D>
+Angular<D> free_spin(const Locks& locks, Angular<D> w) {
+    if constexpr (D == 2) {
+        return locks.rz ? 0.0 : w;
+    } else {
+        return {locks.rx ? 0.0 : w.x, locks.ry ? 0.0 : w.y, locks.rz ? 0.0 : w.z};
+    }
+}
+
+/// Turns the state by the rotation vector `angle` (2D: an angle), counting whole turns in 2D.
+template <int D>
+void turn(BodyState<D>& state, const Angular<D>& angle);
+
+/// The angle with whole turns.
+double whole_angle(const BodyState<2>& state);
+
+/// Kinetic energy, J.
+template <int D>
+double kinetic_energy(const BodyState<D>& state, const BodyMass<D>& mass);
+
+}  // namespace carom::detail

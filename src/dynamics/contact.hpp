@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "carom/collide.hpp"
+#include "math/dim.hpp"
+
+namespace carom::detail {
+
+/// One point of a persistent contact. Arms lead from the centres of mass to the point, along the world's
+/// axes.
+template <int D>
+struct ContactRecordPoint {
+    Vec<D, float> arm_a{}, arm_b{};
+    float separation = 0;  ///< at the start of the step, m
+    float impulse = 0;  ///< normal impulse of the last sub-step, N·s: where the next one starts (warm start)
+    float total_impulse = 0;  ///< normal impulse of the whole step, N·s
+    std::uint32_t feature = 0;
+};
+
+/// Two shapes whose bounds overlap, from step to step. `count` is zero while they are out of reach.
+template <int D>
+struct ContactRecord {
+    std::uint32_t shape_a = 0, shape_b = 0;
+    std::uint32_t body_a = 0, body_b = 0;
+    int count = 0;
+    float friction = 0;
+    float restitution = 0;
+    float rolling = 0;       ///< coefficient × radius, m: resisting torque a unit of normal force
+    Vec<D, float> normal{};  ///< from a to b
+    std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};
+    Vec<D, float> friction_impulse{};  ///< on b in the last sub-step, N·s
+    Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
+    float twist_impulse = 0;           ///< 3D: friction about the normal in the last sub-step, N·m·s
+    Vec<D, float> total_friction{};    ///< on b through the whole step, N·s
+};
+
+}  // namespace carom::detail

@@ -1,0 +1,292 @@
+#include "geometry/shape.hpp"
+
+#include <algorithm>
+
+#include "geometry/hull.hpp"
+#include "math/check.hpp"
+
+namespace carom::detail {
+namespace {
+
+/// A rounded box keeps a core of at least this share of its size, so that opposite faces stay two.
+constexpr double thinnest_core = 1e-3;
+
+void require_length(double value, std::string_view field) {
+    require_positive(value, field);
+    require_in(value, shortest_length, longest_length, field);
+}
+
+template <int D>
+void require_place(const Vec<D>& value, std::string_view field) {
+    require_in(value, -longest_length, longest_length, field);
+}
+
+template <int D>
+Vec<D> unit(int axis) {
+    Vec<D> e{};
+    e[axis] = 1;
+    return e;
+}
+
+Polygon box_core(const Transform2& placed, const Vec2& half) {
+    Polygon polygon;
+    for (const Vec2& corner :
+         {Vec2{-half.x, -half.y}, {half.x, -half.y}, {half.x, half.y}, {-half.x, half.y}}) {
+        polygon.vertices.push_back(apply(placed, corner));
+    }
+    for (const Vec2& normal : {Vec2{0, -1}, {1, 0}, {0, 1}, {-1, 0}}) {
+        polygon.normals.push_back(rotate(placed.rotation, normal));
+    }
+    return polygon;
+}
+
+Polyhedron box_core(const Transform3& placed, const Vec3& half) {
+    Polyhedron box;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner{i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
+        box.vertices.push_back(apply(placed, corner));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double side : {-1.0, 1.0}) {
+            const Vec3 normal = rotate(placed.rotation, side * unit<3>(axis));
+            box.normals.push_back(normal);
+            box.offsets.push_back(dot(normal, placed.position) + half[axis]);
+        }
+    }
+    // Faces −x, +x, −y, +y, −z, +z.
+    box.indices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+    box.first = {0, 4, 8, 12, 16, 20, 24};
+    connect(box);
+    return box;
+}
+
+template <int D>
+void fill(Shape<D>& shape, const Ball& ball, const Transform<D>& placed) {
+    require_length(ball.radius, "radius");
+    shape.kind = ShapeKind::ball;
+    shape.radius = ball.radius;
+    shape.a = placed.position;
+}
+
+template <int D>
+void fill(Shape<D>& shape, const Capsule<D>& capsule, const Transform<D>& placed) {
+    require_place(capsule.from, "from");
+    require_place(capsule.to, "to");
+    require_length(capsule.radius, "radius");
+    shape.kind = ShapeKind::capsule;
+    shape.radius = capsule.radius;
+    shape.a = apply(placed, capsule.from);
+    shape.b = apply(placed, capsule.to);
+}
+
+template <int D>
+void fill(Shape<D>& shape, const Box<D>& box, const Transform<D>& placed) {
+    double smallest = longest_length;
+    for (int i = 0; i < D; ++i) {
+        require_length(box.size[i], component("size", i));
+        smallest = std::min(smallest, box.size[i]);
+    }
+    require_not_negative(box.rounding, "rounding");
+    if (box.rounding > 0.5 * smallest) {
+        refuse("rounding", box.rounding, "is more than half of the smallest length, " + to_text(smallest));
+    }
+    shape.kind = ShapeKind::box;
+    shape.radius = std::min(box.rounding, 0.5 * (1 - thinnest_core) * smallest);
+    shape.a = placed.position;
+    for (int i = 0; i < D; ++i) shape.b[i] = 0.5 * box.size[i] - shape.radius;
+    shape.rotation = placed.rotation;
+    shape.core = std::make_shared<const Polytope<D>>(box_core(placed, shape.b));
+}
+
+template <int D>
+void fill(Shape<D>& shape, const Hull<D>& hull, const Transform<D>& placed) {
+    require_not_negative(hull.rounding, "rounding");
+    require_in(hull.rounding, 0, longest_length, "rounding");
+    Polytope<D> core;
+    if constexpr (D == 2) {
+        core = convex_polygon(hull.points);
+    } else {
+        core = convex_polyhedron(hull.points);
+        for (std::size_t i = 0; i < core.normals.size(); ++i) {
+            core.normals[i] = rotate(placed.rotation, core.normals[i]);
+            core.offsets[i] += dot(core.normals[i], placed.position);
+        }
+    }
+    if constexpr (D == 2) {
+        for (Vec2& normal : core.normals) normal = rotate(placed.rotation, normal);
+    }
+    for (Vec<D>& vertex : core.vertices) vertex = apply(placed, vertex);
+    shape.kind = ShapeKind::hull;
+    shape.radius = hull.rounding;
+    shape.core = std::make_shared<const Polytope<D>>(std::move(core));
+}
+
+template <int D>
+void fill(Shape<D>& shape, const Plane<D>& plane, const Transform<D>& placed) {
+    require_place(plane.normal, "normal");
+    require_in(plane.offset, -longest_length, longest_length, "offset");
+    double largest = 0;
+    for (int i = 0; i < D; ++i) largest = std::max(largest, std::fabs(plane.normal[i]));
+    if (!(largest > 0)) throw Error("normal: all components are zero");
+    shape.kind = ShapeKind::plane;
+    shape.a = rotate(placed.rotation, normalized(plane.normal / largest));
+    shape.offset = plane.offset + dot(shape.a, placed.position);
+}
+
+/// Cylinder and cone stand along the y axis.
+template <class Round>
+void fill_round(Shape<3>& shape, ShapeKind kind, const Round& round, const Transform3& placed) {
+    require_length(round.radius, "radius");
+    require_length(round.height, "height");
+    shape.kind = kind;
+    shape.radius = round.radius;
+    shape.half_height = 0.5 * round.height;
+    shape.a = placed.position;
+    shape.b = rotate(placed.rotation, Vec3{0, 1, 0});
+}
+void fill(Shape<3>& shape, const Cylinder& cylinder, const Transform3& placed) {
+    fill_round(shape, ShapeKind::cylinder, cylinder, placed);
+}
+void fill(Shape<3>& shape, const Cone& cone, const Transform3& placed) {
+    fill_round(shape, ShapeKind::cone, cone, placed);
+}
+
+/// The corner of the polytope that lies furthest along the direction; the first of several.
+template <int D>
+Vec<D> furthest_corner(const Polytope<D>& core, const Vec<D>& direction) {
+    const Vec<D>* best = &core.vertices.front();
+    double furthest = dot(*best, direction);
+    for (const Vec<D>& vertex : core.vertices) {
+        const double distance = dot(vertex, direction);
+        if (distance > furthest) {
+            furthest = distance;
+            best = &vertex;
+        }
+    }
+    return *best;
+}
+
+Vec3 round_support(const Shape<3>& shape, const Vec3& direction) {
+    const double along = dot(direction, shape.b);
+    const Vec3 outward = direction - along * shape.b;
+    const double outward_length = length(outward);
+    const Vec3 rim = outward_length > 0 ? outward * (shape.radius / outward_length) : Vec3{};
+    const Vec3 up = shape.half_height * shape.b;
+    if (shape.kind == ShapeKind::cylinder) return shape.a + (along < 0 ? rim - up : rim + up);
+    // A cone: the tip, or the rim of its base.
+    const bool tip = 2 * shape.half_height * along > shape.radius * outward_length;
+    return shape.a + (tip ? up : rim - up);
+}
+
+/// How far the shape reaches along the unit vector of an axis and against it, in the body's frame.
+template <int D>
+std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
+    switch (shape.kind) {
+        case ShapeKind::ball: {
+            const double middle = dot(axis, shape.a);
+            return {middle - shape.radius, middle + shape.radius};
+        }
+        case ShapeKind::capsule: {
+            const double a = dot(axis, shape.a), b = dot(axis, shape.b);
+            return {std::min(a, b) - shape.radius, std::max(a, b) + shape.radius};
+        }
+        case ShapeKind::hull: {
+            double lowest = 1e300, highest = -1e300;
+            for (const Vec<D>& vertex : shape.core->vertices) {
+                const double distance = dot(axis, vertex);
+                lowest = std::min(lowest, distance);
+                highest = std::max(highest, distance);
+            }
+            return {lowest - shape.radius, highest + shape.radius};
+        }
+        case ShapeKind::box: {
+            const double middle = dot(axis, shape.a);
+            const Vec<D> local = unrotate(shape.rotation, axis);
+            double half = shape.radius;
+            for (int i = 0; i < D; ++i) half += std::fabs(local[i]) * shape.b[i];
+            return {middle - half, middle + half};
+        }
+        case ShapeKind::plane: {
+            // Finite only across the plane: n · x ≤ offset.
+            const double across = dot(axis, shape.a);
+            return {across == -1 ? -shape.offset : -1e300, across == 1 ? shape.offset : 1e300};
+        }
+        case ShapeKind::cylinder:
+        case ShapeKind::cone:
+            break;
+    }
+    if constexpr (D == 3) {
+        // A disk about the unit axis b with radius r reaches r √(1 − (axis · b)²) from its centre.
+        const double middle = dot(axis, shape.a), along = dot(axis, shape.b);
+        const double rim = shape.radius * std::sqrt(std::max(0.0, 1 - along * along));
+        const double top = middle + along * shape.half_height, bottom = middle - along * shape.half_height;
+        const double top_rim = shape.kind == ShapeKind::cone ? 0 : rim;
+        return {std::min(top - top_rim, bottom - rim), std::max(top + top_rim, bottom + rim)};
+    }
+    return {};
+}
+
+}  // namespace
+
+void check_material(const Material& material) {
+    require_not_negative(material.density, "density");
+    require_not_negative(material.friction, "friction");
+    require_in(material.restitution, 0, 1, "restitution");
+    require_not_negative(material.rolling_resistance, "rolling_resistance");
+}
+
+template <int D>
+Shape<D> make_shape(const ShapeDefinition<D>& definition) {
+    check_material(definition.material);
+    require_place(definition.center, "center");
+    require_unit(definition.rotation, "rotation");
+    const Transform<D> placed{definition.center, normalized(definition.rotation)};
+    Shape<D> shape;
+    std::visit([&](const auto& geometry) { fill(shape, geometry, placed); }, definition.geometry);
+    return shape;
+}
+
+template <int D>
+Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed) {
+    Aabb<D> box;
+    for (int i = 0; i < D; ++i) {
+        const auto [lowest, highest] = reach(shape, unrotate(placed.rotation, unit<D>(i)));
+        box.lower[i] = placed.position[i] + lowest;
+        box.upper[i] = placed.position[i] + highest;
+    }
+    return box;
+}
+
+template <int D>
+Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
+    switch (shape.kind) {
+        case ShapeKind::ball:
+            return shape.a;
+        case ShapeKind::capsule:
+            return dot(shape.b - shape.a, direction) > 0 ? shape.b : shape.a;
+        case ShapeKind::hull:
+            return furthest_corner<D>(*shape.core, direction);
+        case ShapeKind::box: {
+            const Vec<D> local = unrotate(shape.rotation, direction);
+            Vec<D> corner = shape.b;
+            for (int i = 0; i < D; ++i) corner[i] = local[i] < 0 ? -corner[i] : corner[i];
+            return shape.a + rotate(shape.rotation, corner);
+        }
+        case ShapeKind::cylinder:
+        case ShapeKind::cone:
+            if constexpr (D == 3) return round_support(shape, direction);
+            break;
+        case ShapeKind::plane:
+            break;
+    }
+    return {};
+}
+
+template Shape<2> make_shape(const ShapeDefinition<2>&);
+template Shape<3> make_shape(const ShapeDefinition<3>&);
+template Aabb<2> bounds(const Shape<2>&, const Transform<2>&);
+template Aabb<3> bounds(const Shape<3>&, const Transform<3>&);
+template Vec<2> core_support(const Shape<2>&, const Vec<2>&);
+template Vec<3> core_support(const Shape<3>&, const Vec<3>&);
+
+}  // namespace carom::detail

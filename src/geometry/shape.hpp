@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "carom/mass.hpp"
+#include "carom/shapes.hpp"
+
+namespace carom::detail {
+
+/// Kinds of shape, in the order of the rows and columns of the collision matrix.
+enum class ShapeKind : std::uint8_t { ball, capsule, box, hull, cylinder, cone, plane };
+
+/// A convex polygon (2D): corners counter-clockwise; normal i belongs to the edge from corner i to i + 1.
+struct Polygon {
+    std::vector<Vec2> vertices;
+    std::vector<Vec2> normals;
+};
+
+/// A convex polyhedron (3D). Face f has the corners indices[first[f]] … indices[first[f + 1] − 1],
+/// counter-clockwise seen from outside, and lies in the plane normals[f] · x = offsets[f].
+struct Polyhedron {
+    struct Edge {
+        std::uint32_t from, to;     ///< corners; the edge runs so along `left`'s boundary
+        std::uint32_t left, right;  ///< the two faces that it parts
+    };
+    std::vector<Vec3> vertices;
+    std::vector<Vec3> normals;
+    std::vector<double> offsets;
+    std::vector<std::uint32_t> indices;
+    std::vector<std::uint32_t> first;  ///< one more than there are faces
+    std::vector<Edge> edges;
+};
+
+template <int D>
+using Polytope = std::conditional_t<D == 2, Polygon, Polyhedron>;
+
+/// A shape as the engine works with it: checked, and placed in the frame of its body, so that only the
+/// body's own placement is left to apply. Shapes of kind box and hull are `core` grown by `radius`;
+/// a capsule is the segment from `a` to `b` grown by `radius`; a ball is the point `a` grown by `radius`.
+template <int D>
+struct Shape {
+    ShapeKind kind = ShapeKind::ball;
+    double radius = 0;       ///< ball, capsule: radius; box, hull: rounding; cylinder, cone: radius
+    double half_height = 0;  ///< cylinder, cone
+    Vec<D> a{};              ///< ball: centre; capsule: one end; cylinder, cone, box: centre;
+                             ///< plane: unit normal
+    Vec<D> b{};              ///< capsule: other end; cylinder, cone: unit axis; box: half lengths of
+                             ///< the core (without the rounding)
+    double offset = 0;       ///< plane: n · x ≤ offset is solid
+    Rotation<D> rotation{};  ///< box: turn of its axes in the body
+    std::shared_ptr<const Polytope<D>> core;  ///< box, hull: corners and faces in the body's frame
+};
+
+/// Lengths that shapes may have, m. Beyond these, volumes and moments of inertia leave the range in which
+/// the engine computes well.
+constexpr double shortest_length = 1e-9, longest_length = 1e9;
+
+/// Checks what a shape is made of. Throws `Error` that names the field.
+void check_material(const Material& material);
+
+/// Checks the definition and makes the shape. Throws `Error` that names the field (`radius`, `size`, …).
+template <int D>
+Shape<D> make_shape(const ShapeDefinition<D>& definition);
+
+/// Axis-aligned bounds of the shape on a body at `placed`; a plane's are infinite (±1e300) where they must
+/// be.
+template <int D>
+Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed);
+
+/// The point of the shape that lies furthest along `direction` (any length but zero), in the body's frame,
+/// without `radius` for ball, capsule, box and hull (their core only). Not for planes.
+template <int D>
+Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction);
+
+/// The radius by which the core of `core_support` is grown: zero for cylinder and cone.
+template <int D>
+double core_radius(const Shape<D>& shape) {
+    return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone ? 0.0 : shape.radius;
+}
+
+/// Convex hull of the points, corners counter-clockwise, collinear ones left out (Andrew 1979).
+/// Throws `Error` when the points span no area.
+Polygon convex_polygon(const std::vector<Vec2>& points);
+
+/// Convex hull of the points, coplanar triangles merged into faces (Quickhull, Barber et al. 1996).
+/// Throws `Error` when the points span no volume.
+Polyhedron convex_polyhedron(const std::vector<Vec3>& points);
+
+}  // namespace carom::detail

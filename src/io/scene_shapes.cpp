@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/scene_parts.hpp"
+
+namespace carom::io {
+namespace {
+
+template <int D>
+Fields ball_fields(Geometry<D>& geometry) {
+    Ball& ball = geometry.template emplace<Ball>();
+    return {required("radius", ball.radius)};
+}
+
+template <int D>
+Fields box_fields(Geometry<D>& geometry) {
+    Box<D>& box = geometry.template emplace<Box<D>>();
+    return {required("size", box.size), field("rounding", box.rounding)};
+}
+
+template <int D>
+Fields capsule_fields(Geometry<D>& geometry) {
+    Capsule<D>& capsule = geometry.template emplace<Capsule<D>>();
+    return {required("from", capsule.from), required("to", capsule.to), required("radius", capsule.radius)};
+}
+
+template <int D>
+Fields hull_fields(Geometry<D>& geometry) {
+    Hull<D>& hull = geometry.template emplace<Hull<D>>();
+    return {required("points", hull.points), field("rounding", hull.rounding)};
+}
+
+template <int D>
+Fields plane_fields(Geometry<D>& geometry) {
+    Plane<D>& plane = geometry.template emplace<Plane<D>>();
+    return {required("normal", plane.normal), required("offset", plane.offset)};
+}
+
+/// For cylinders and cones.
+template <class Round>
+Fields round_fields(Geometry<3>& geometry) {
+    Round& round = geometry.emplace<Round>();
+    return {required("radius", round.radius), required("height", round.height)};
+}
+
+/// A type of shape: its name, and a function that makes the geometry and says how its fields are read.
+template <int D>
+struct ShapeType {
+    std::string_view name;
+    Fields (*fields)(Geometry<D>&);
+};
+
+template <int D>
+constexpr auto shape_types() {
+    if constexpr (D == 2)
+        return std::array<ShapeType<2>, 5>{{{"ball", ball_fields<2>},
+                                            {"box", box_fields<2>},
+                                            {"capsule", capsule_fields<2>},
+                                            {"hull", hull_fields<2>},
+                                            {"plane", plane_fields<2>}}};
+    else
+        return std::array<ShapeType<3>, 7>{{{"ball", ball_fields<3>},
+                                            {"box", box_fields<3>},
+                                            {"capsule", capsule_fields<3>},
+                                            {"hull", hull_fields<3>},
+                                            {"cylinder", round_fields<Cylinder>},
+                                            {"cone", round_fields<Cone>},
+                                            {"plane", plane_fields<3>}}};
+}
+
+constexpr std::string_view types_to_come[] = {"chain", "mesh", "height_field"};
+
+template <int D>
+const ShapeType<D>& read_type(const Value& value) {
+    static constexpr auto types = shape_types<D>();
+    std::vector<std::string_view> names;
+    for (const auto& type : types) names.push_back(type.name);
+
+    std::string written;
+    read(value, written);
+    if (std::ranges::count(types_to_come, written))
+        value.refuse(fmt::format("is not supported by this version; allowed are {}", listed(names)));
+    if (D == 2 && (written == "cylinder" || written == "cone"))
+        value.refuse(fmt::format("exists in 3D only; allowed in 2D are {}", listed(names)));
+    return types[read_choice(value, names)];
+}
+
+}  // namespace
+
+Fields material_fields(Material& material) {
+    const auto restitution = [&material](const Value& value) {
+        read(value, material.restitution);
+        if (material.restitution < 0 || material.restitution > 1) value.refuse("is not between 0 and 1");
+    };
+    return {not_negative("density", material.density), not_negative("friction", material.friction),
+            field("restitution", restitution),
+            not_negative("rolling_resistance", material.rolling_resistance)};
+}
+
+template <int D>
+void read_shape(const Value& value, const Materials& materials, ShapeDefinition<D>& shape,
+                std::string& material_name) {
+    // The type comes first: it says which other fields there may be.
+    const Value type(value, member(value, "type"), "type");
+    const Fields of_type = read_type<D>(type).fields(shape.geometry);
+
+    const auto material = [&](const Value& name) {
+        read(name, material_name);
+        const auto found = materials.find(material_name);
+        if (found == materials.end()) {
+            std::vector<std::string_view> known;
+            for (const auto& [known_name, known_material] : materials) known.push_back(known_name);
+            name.refuse(fmt::format("is not a material of this scene{}", suggestion(material_name, known)));
+        }
+        shape.material = found->second;
+    };
+    const Fields placed = {field("type", [](const Value&) {}), field("center", shape.center),
+                           orientation<D>(shape.rotation)};
+    // The named material comes before the fields that may change it.
+    const Fields contact = {field("category", shape.filter.category), field("mask", shape.filter.mask),
+                            field("group", shape.filter.group),       not_supported("sensor", false),
+                            not_supported("surface_velocity", 0),     not_supported("one_way")};
+    read_object(value, placed + of_type + Fields{field("material", material)} +
+                           material_fields(shape.material) + contact);
+}
+
+template void read_shape(const Value&, const Materials&, ShapeDefinition<2>&, std::string&);
+template void read_shape(const Value&, const Materials&, ShapeDefinition<3>&, std::string&);
+
+}  // namespace carom::io

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace carom::io {
+
+/// The median of what was measured (the mean of the two middle ones where the number is even), and the
+/// largest; zero where nothing was.
+double median(std::vector<double> values);
+double largest(const std::vector<double>& values);
+
+/// Sixteen hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+/// What `carom run` says at its end.
+struct RunSummary {
+    std::string name;
+    int dimension = 0;
+    int bodies = 0, shapes = 0, contacts = 0, joints = 0;
+    std::uint64_t steps = 0;
+    int threads = 1;
+    double ms_per_step = 0;  ///< median
+    double ms_per_step_worst = 0;
+    double energy_start = 0, energy_end = 0;  ///< J
+    std::uint64_t hash = 0;
+};
+
+/// The summary in a few lines, for a person.
+std::string to_text(const RunSummary& summary);
+
+/// The summary with the keys that docs/command-line.md promises.
+nlohmann::ordered_json to_json(const RunSummary& summary);
+
+}  // namespace carom::io

@@ -1,0 +1,344 @@
+#include "solver/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/flight.hpp"
+#include "math/trig.hpp"
+#include "solver/bounce.hpp"
+
+namespace carom::detail {
+
+namespace {
+
+constexpr double contact_frequency = 30;      // Hz, and no more than an eighth of the sub-step rate
+constexpr double contact_damping_ratio = 10;  // heavily overdamped: overlap is pushed apart without a bounce
+constexpr float contact_push_speed = 3;       // m/s
+
+Softness<float> softness(double hertz, double damping_ratio, double h) {
+    const double omega = 2 * pi * hertz;
+    const double a1 = 2 * damping_ratio + h * omega;
+    const double a2 = h * omega * a1;
+    const double a3 = 1 / (1 + a2);
+    return {static_cast<float>(omega / a1), static_cast<float>(a2 * a3), static_cast<float>(a3)};
+}
+
+float inverse_or_zero(float k) { return k > 0 ? 1 / k : 0.0f; }
+Symmetric3<float> inverse_or_zero(const Symmetric3<float>& k) {
+    return determinant(k) > 0 ? inverse(k) : Symmetric3<float>{};
+}
+
+}  // namespace
+
+template <int D>
+void Solver<D>::run(const SolverInput<D>& input) {
+    if (input.active.empty()) return;
+    h_ = static_cast<float>(input.step / input.substeps);
+    sub_ = {1 / h_, contact_push_speed};
+    const double hertz = std::min(contact_frequency, 0.125 * input.substeps / input.step);
+    soft_ = softness(hertz, contact_damping_ratio, input.step / input.substeps);
+    soft_fixed_ = softness(2 * hertz, contact_damping_ratio, input.step / input.substeps);
+
+    gather_bodies(input);
+    prepare(input);
+    begin_warm();
+    find_impacts(input);
+    for (int i = 0; i < input.substeps; ++i) {
+        integrate_velocities();
+        solve<true>();
+        integrate_positions();
+        solve<false>();
+        finish_substep();
+    }
+    bounce(input);
+    store(input);
+}
+
+template <int D>
+std::uint32_t Solver<D>::slot(const SolverInput<D>& input, std::uint32_t body) {
+    if (input.types[body] == BodyType::fixed) return 0;
+    if (slot_of_[body] == 0) {
+        slot_of_[body] = static_cast<std::uint32_t>(bodies_.size());
+        bodies_.push_back(body);
+    }
+    return slot_of_[body];
+}
+
+template <int D>
+void Solver<D>::gather_bodies(const SolverInput<D>& input) {
+    slot_of_.assign(input.states.size(), 0);
+    bodies_.assign(1, 0);
+    pairs_.clear();
+    for (const std::uint32_t i : input.active) {
+        const ContactRecord<D>& c = input.contacts[i];
+        const std::uint32_t a = slot(input, c.body_a);
+        pairs_.push_back({a, slot(input, c.body_b)});
+    }
+    motions_.assign(bodies_.size(), {});
+    weights_.assign(bodies_.size(), {});
+    drives_.assign(bodies_.size(), {});
+    for (std::size_t s = 1; s < bodies_.size(); ++s)
+        load_body(input, bodies_[s], motions_[s], weights_[s], drives_[s]);
+}
+
+template <int D>
+void Solver<D>::load_body(const SolverInput<D>& input, std::uint32_t body, Body& motion,
+                          Weight<D, float>& weight, Drive& drive) const {
+    const BodyState<D>& state = input.states[body];
+    const BodyMass<D>& mass = input.masses[body];
+    motion.v = narrow<float>(state.velocity);
+    motion.w = narrow<float>(state.angular_velocity);
+    if (mass.inverse_mass == 0) return;
+
+    Vec<D> one{};
+    for (int i = 0; i < D; ++i) one[i] = mass.inverse_mass;
+    weight.mass = narrow<float>(free_components<D>(mass.locks, one));
+    const Inertia<D> inertia = world_inverse_inertia<D>(mass, state.rotation);
+    weight.inertia = narrow<float>(inertia);
+
+    // The gyroscopic term: what the spin would do by itself through the step, spread evenly over it.
+    const Angular<D> coasting = coasting_spin<D>(state, mass, input.step) - state.angular_velocity;
+    drive.acceleration =
+        narrow<float>(free_components<D>(mass.locks, input.loads[body].force * mass.inverse_mass));
+    drive.spin_acceleration =
+        narrow<float>(Angular<D>(inertia * input.loads[body].torque + coasting * (1 / input.step)));
+    drive.damping = static_cast<float>(Decay(mass.linear_damping, h_).factor);
+    drive.spin_damping = static_cast<float>(Decay(mass.angular_damping, h_).factor);
+}
+
+template <int D>
+void Solver<D>::prepare(const SolverInput<D>& input) {
+    rows_.resize(input.active.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const ContactRecord<D>& record = input.contacts[input.active[i]];
+        prepare_contact(record, rows_[i], pairs_[i].a, pairs_[i].b);
+    }
+}
+
+template <int D>
+void Solver<D>::prepare_contact(const ContactRecord<D>& record, Rows& rows, std::uint32_t a,
+                                std::uint32_t b) const {
+    const Weight<D, float>&wa = weights_[a], &wb = weights_[b];
+    rows = {};
+    rows.normal = record.normal;
+    rows.tangents = tangents<D>(record.normal);
+    rows.friction = record.friction;
+    rows.rolling = record.rolling;
+    const bool one_is_heavy = wa.mass == Vec<D, float>{} || wb.mass == Vec<D, float>{};
+    rows.soft = one_is_heavy ? soft_fixed_ : soft_;
+
+    const float share = 1 / static_cast<float>(record.count);
+    for (int i = 0; i < record.count; ++i) {
+        const ContactRecordPoint<D>& from = record.points[i];
+        NormalRow<D, float>& p = rows.points[i];
+        p.arm_a = from.arm_a;
+        p.arm_b = from.arm_b;
+        p.separation = from.separation;
+        p.impulse = from.impulse;
+        p.mass = inverse_or_zero(compliance(rows.normal, p.arm_a, p.arm_b, wa, wb));
+        rows.arm_a += share * p.arm_a;
+        rows.arm_b += share * p.arm_b;
+    }
+    for (int i = 0; i < D - 1; ++i) rows.friction_impulse[i] = dot(record.friction_impulse, rows.tangents[i]);
+    rows.rolling_impulse = record.spin_impulse;
+    const Inertia<D, float> turning = wa.inertia + wb.inertia;
+    if (record.rolling > 0) rows.rolling_mass = inverse_or_zero(turning);
+
+    const float k11 = compliance(rows.tangents[0], rows.arm_a, rows.arm_b, wa, wb);
+    if constexpr (D == 2) {
+        rows.patch_mass[0] = inverse_or_zero(k11);
+    } else {
+        const float k22 = compliance(rows.tangents[1], rows.arm_a, rows.arm_b, wa, wb);
+        const auto lever = [&](const Vec<3, float>& arm, int t) { return cross(arm, rows.tangents[t]); };
+        const float k12 = dot(rows.tangents[0], each(wa.mass + wb.mass, rows.tangents[1])) +
+                          dot(lever(rows.arm_a, 0), wa.inertia * lever(rows.arm_a, 1)) +
+                          dot(lever(rows.arm_b, 0), wb.inertia * lever(rows.arm_b, 1));
+        const float det = k11 * k22 - k12 * k12;
+        const float k = inverse_or_zero(det);
+        rows.patch_mass = {k22 * k, -k12 * k, k11 * k};
+        rows.twist_mass = inverse_or_zero(dot(rows.normal, turning * rows.normal));
+        rows.twist_impulse = record.twist_impulse;
+        for (int i = 0; i < record.count; ++i)
+            rows.points[i].lever = length(rows.points[i].arm_a - rows.arm_a);
+    }
+}
+
+/// The impulses kept from the step before act as one change of velocity a body. Within the step the Jacobians
+/// are constant, so what the constraints did in a sub-step is the difference of velocities, and warm starting
+/// the next needs no pass over the constraints.
+template <int D>
+void Solver<D>::begin_warm() {
+    std::vector<Body>& warm = motions_;
+    const std::vector<Body> kept = warm;
+    for (Body& m : warm) m = {};
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const auto [a, b] = pairs_[i];
+        warm_start(rows_[i], warm[a], warm[b], weights_[a], weights_[b]);
+    }
+    for (std::size_t s = 1; s < drives_.size(); ++s) {
+        Drive& d = drives_[s];
+        d.warm = warm[s].v;
+        d.warm_spin = warm[s].w;
+        d.change = d.warm + h_ * d.acceleration;
+        d.spin_change = d.warm_spin + h_ * d.spin_acceleration;
+    }
+    warm = kept;
+}
+
+template <int D>
+void Solver<D>::integrate_velocities() {
+    for (std::size_t s = 1; s < drives_.size(); ++s) {
+        Body& m = motions_[s];
+        Drive& d = drives_[s];
+        d.start = m.v * d.damping;
+        d.start_spin = m.w * d.spin_damping;
+        m.v = d.start + h_ * d.acceleration + d.warm;
+        m.w = d.start_spin + h_ * d.spin_acceleration + d.warm_spin;
+    }
+}
+
+template <int D>
+template <bool biased>
+void Solver<D>::solve() {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const auto [a, b] = pairs_[i];
+        solve_normals<biased>(rows_[i], motions_[a], motions_[b], weights_[a], weights_[b], sub_);
+        if constexpr (!biased) solve_friction(rows_[i], motions_[a], motions_[b], weights_[a], weights_[b]);
+    }
+}
+
+template <int D>
+void Solver<D>::integrate_positions() {
+    for (std::size_t s = 1; s < motions_.size(); ++s) {
+        Body& m = motions_[s];
+        m.moved += h_ * m.v;
+        m.turned = m.turned + h_ * m.w;
+    }
+}
+
+/// The steady part of a change of velocity Δ: what this sub-step has in common with the one before. It is Δ
+/// itself in free fall, sliding and rolling, and nothing in a blow or at rest.
+template <class V, class Dot>
+V steady_part(const V& now, const V& before, Dot&& dot) {
+    const float squared = dot(now, now);
+    if (squared == 0) return now;
+    return now * std::clamp(dot(now, before) / squared, 0.0f, 1.0f);
+}
+
+/// x += h v(new) is first order. With the steady part Δ of the change of velocity, x += h v − ½ h Δ is the
+/// trapezoidal rule: exact under constant acceleration, so flight, sliding and rolling near contacts are
+/// second order, while a blow or a push against overlap still acts through the whole sub-step.
+template <int D>
+void Solver<D>::finish_substep() {
+    for (std::size_t s = 1; s < motions_.size(); ++s) {
+        Body& m = motions_[s];
+        Drive& d = drives_[s];
+        const Vec<D, float> change = m.v - d.start;
+        const Angular<D, float> spin_change = m.w - d.start_spin;
+        d.warm = change - h_ * d.acceleration;
+        d.warm_spin = spin_change - h_ * d.spin_acceleration;
+        const auto product = [](const auto& a, const auto& b) { return dot(a, b); };
+        const auto spin_product = [](const auto& a, const auto& b) { return angular_dot(a, b); };
+        m.moved -= 0.5f * h_ * steady_part(change, d.change, product);
+        m.turned = m.turned - 0.5f * h_ * steady_part(spin_change, d.spin_change, spin_product);
+        d.change = change;
+        d.spin_change = spin_change;
+    }
+    for (Rows& rows : rows_) {
+        for (NormalRow<D, float>& p : rows.points) p.total_impulse += p.impulse;
+    }
+}
+
+template <int D>
+void Solver<D>::find_impacts(const SolverInput<D>& input) {
+    impacts_.clear();
+    for (std::uint32_t i = 0; i < rows_.size(); ++i) {
+        const ContactRecord<D>& record = input.contacts[input.active[i]];
+        if (record.restitution == 0) continue;
+        const auto [a, b] = pairs_[i];
+        const auto acceleration = [&](std::uint32_t s, const Vec<D, float>& arm) {
+            const Drive& d = drives_[s];
+            return (d.change + cross(d.spin_change, arm)) * (1 / h_);
+        };
+        for (int k = 0; k < record.count; ++k) {
+            const NormalRow<D, float>& p = rows_[i].points[k];
+            const Vec<D, float> v = relative_velocity(motions_[a], motions_[b], p.arm_a, p.arm_b);
+            const Vec<D, float> pull = acceleration(b, p.arm_b) - acceleration(a, p.arm_a);
+            impacts_.push_back({i, static_cast<std::uint32_t>(k), record.restitution, dot(rows_[i].normal, v),
+                                dot(rows_[i].normal, pull)});
+        }
+    }
+}
+
+/// Restitution, once at the end of the step: every point that was hit is given the speed and the place that
+/// it has after a bounce at the time of its impact. Points of one body share its motion, so a few passes, to
+/// and fro, bring them to agree.
+template <int D>
+void Solver<D>::bounce(const SolverInput<D>& input) {
+    constexpr int passes = 8;
+    for (int pass = 0; pass < passes; ++pass) {
+        for (std::size_t k = 0; k < impacts_.size(); ++k) {
+            const Impact& i = impacts_[pass % 2 == 0 ? k : impacts_.size() - 1 - k];
+            const NormalRow<D, float>& p = rows_[i.row].points[i.point];
+            if (p.total_impulse == 0) continue;
+            const Rebound r = rebound(i.restitution, p.separation, i.speed, i.acceleration, input.step,
+                                      input.restitution_threshold);
+            if (r.bounces) bounce(i, r);
+        }
+    }
+}
+
+template <int D>
+void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
+    Rows& rows = rows_[impact.row];
+    NormalRow<D, float>& p = rows.points[impact.point];
+    const auto [a, b] = pairs_[impact.row];
+    Body &ma = motions_[a], &mb = motions_[b];
+
+    const float speed = dot(rows.normal, relative_velocity(ma, mb, p.arm_a, p.arm_b));
+    const float blow = std::max(p.mass * (static_cast<float>(rebound.speed) - speed), -p.total_impulse);
+    p.total_impulse += blow;
+    p.impulse = 0;  // the blow is over: nothing of it belongs into the next step
+    push(ma, mb, weights_[a], weights_[b], p.arm_a, p.arm_b, blow * rows.normal);
+
+    // The place: the same impulse arithmetic on displacements instead of velocities.
+    const float lack = static_cast<float>(rebound.gap) - gap(rows, p, ma, mb);
+    if (lack <= 0) return;
+    const Vec<D, float> shift = p.mass * lack * rows.normal;
+    ma.moved -= each(weights_[a].mass, shift);
+    ma.turned = ma.turned - weights_[a].inertia * cross(p.arm_a, shift);
+    mb.moved += each(weights_[b].mass, shift);
+    mb.turned = mb.turned + weights_[b].inertia * cross(p.arm_b, shift);
+}
+
+template <int D>
+void Solver<D>::store(const SolverInput<D>& input) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Rows& rows = rows_[i];
+        ContactRecord<D>& record = input.contacts[input.active[i]];
+        for (int k = 0; k < record.count; ++k) {
+            record.points[k].impulse = rows.points[k].impulse;
+            record.points[k].total_impulse = rows.points[k].total_impulse;
+        }
+        record.friction_impulse = {};
+        for (int k = 0; k < D - 1; ++k)
+            record.friction_impulse += rows.friction_impulse[k] * rows.tangents[k];
+        record.spin_impulse = rows.rolling_impulse;
+        record.twist_impulse = rows.twist_impulse;
+        record.total_friction = record.friction_impulse * static_cast<float>(input.substeps);
+    }
+    for (std::size_t s = 1; s < bodies_.size(); ++s) {
+        if (input.types[bodies_[s]] != BodyType::dynamic) continue;
+        BodyState<D>& state = input.states[bodies_[s]];
+        const Body& m = motions_[s];
+        state.position += narrow<double>(m.moved);
+        turn<D>(state, narrow<double>(m.turned));
+        state.velocity = narrow<double>(m.v);
+        state.angular_velocity = narrow<double>(m.w);
+    }
+}
+
+template class Solver<2>;
+template class Solver<3>;
+
+}  // namespace carom::detail

@@ -1,0 +1,378 @@
+#include <algorithm>
+
+#include "math/check.hpp"
+#include "world/state.hpp"
+#include "world/validate.hpp"
+
+// What changes a world between steps. Everything is checked before anything is changed.
+
+namespace carom {
+
+using namespace detail;
+
+template <int D>
+World<D>::World(const WorldDefinition<D>& definition) {
+    validate(definition);
+    state_ = std::make_unique<WorldState<D>>();
+    state_->definition = definition;
+}
+
+template <int D>
+World<D>::~World() = default;
+template <int D>
+World<D>::World(World&&) noexcept = default;
+template <int D>
+World<D>& World<D>::operator=(World&&) noexcept = default;
+
+template <int D>
+void World<D>::set_gravity(const Vec<D>& gravity) {
+    require_finite(gravity, "gravity");
+    state_->definition.gravity = gravity;
+    state_->wake_all();
+}
+
+namespace {
+
+template <int D>
+std::uint32_t new_body_place(WorldState<D>& w) {
+    const std::uint32_t i = w.body_slots.acquire();
+    if (i == w.states.size()) {
+        w.states.emplace_back();
+        w.masses.emplace_back();
+        w.types.emplace_back();
+        w.infos.emplace_back();
+        w.applied.emplace_back();
+    }
+    w.states[i] = {};
+    w.masses[i] = {};
+    w.infos[i] = {};
+    w.applied[i] = {};
+    return i;
+}
+
+template <int D>
+ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition) {
+    const std::uint32_t i = w.shape_slots.acquire();
+    if (i == w.shapes.size()) w.shapes.emplace_back();
+    const bool listed = w.shapes[i].moved;  // a place that was freed since the last step is still on the list
+    w.shapes[i] = {make_shape(definition), definition, body, Tree<D>::none, false, listed};
+    const auto id = w.shape_slots.template id<ShapeId<D>>(i);
+    w.infos[body].shapes.push_back(id);
+    return id;
+}
+
+template <int D>
+void drop_shape(WorldState<D>& w, ShapeId<D> id) {
+    for (std::size_t c = 0; c < w.contacts.size();) {
+        const bool its_own = w.contacts[c].shape_a == id.index || w.contacts[c].shape_b == id.index;
+        its_own ? w.remove_contact(c) : void(++c);
+    }
+    w.remove_leaf(id.index);
+    w.shape_slots.release(id.index);
+}
+
+}  // namespace
+
+template <int D>
+BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
+    validate(definition);
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = new_body_place(w);
+    w.types[i] = definition.type;
+    BodyState<D>& s = w.states[i];
+    s.position = definition.position;
+    s.rotation = normalized(definition.rotation);
+    BodyInfo<D>& info = w.infos[i];
+    info.can_sleep = definition.can_sleep;
+    info.bullet = definition.bullet;
+    info.definition = definition;
+    info.definition.shapes.clear();
+    BodyMass<D>& m = w.masses[i];
+    m.gravity_scale = definition.gravity_scale;
+    m.linear_damping = definition.linear_damping;
+    m.angular_damping = definition.angular_damping;
+    m.locks = definition.locks;
+    for (const ShapeDefinition<D>& shape : definition.shapes) put_shape(w, i, shape);
+    w.update_mass(i);  // moves the state from the frame to the centre of mass
+    if (definition.type != BodyType::fixed) {
+        s.velocity = free_components<D>(m.locks, definition.velocity);
+        s.angular_velocity = free_spin<D>(m.locks, definition.angular_velocity);
+        w.movable.push_back(i);
+    }
+    for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
+    const auto id = w.body_slots.template id<BodyId<D>>(i);
+    w.body_ids.push_back(id);
+    return id;
+}
+
+template <int D>
+void World<D>::remove_body(BodyId<D> body) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(body);
+    w.wake_neighbours(i);
+    w.wake_islands();
+    w.remove_contacts_of(i);
+    for (const ShapeId<D>& shape : w.infos[i].shapes) {
+        w.remove_leaf(shape.index);
+        w.shape_slots.release(shape.index);
+    }
+    w.forces.remove_all_of(body);
+    w.infos[i] = {};
+    std::erase(w.movable, i);
+    std::erase(w.body_ids, body);
+    w.body_slots.release(i);
+}
+
+template <int D>
+ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definition) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(body);
+    const Shape<D> shape = make_shape(definition);
+    if (shape.kind == ShapeKind::plane && w.types[i] != BodyType::fixed)
+        throw Error("geometry: a plane needs a fixed body");
+    const ShapeId<D> id = put_shape(w, i, definition);
+    w.update_mass(i);
+    w.insert_leaf(id.index);
+    w.wake(i);
+    return id;
+}
+
+template <int D>
+void World<D>::remove_shape(ShapeId<D> shape) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t body = w.shapes[w.index(shape)].body;
+    std::vector<ShapeDefinition<D>> rest;
+    for (const ShapeId<D>& id : w.infos[body].shapes) {
+        if (id != shape) rest.push_back(w.shapes[id.index].definition);
+    }
+    body_mass<D>(w.infos[body].definition, rest);
+    w.wake_neighbours(body);
+    w.wake_islands();
+    drop_shape(w, shape);
+    std::erase(w.infos[body].shapes, shape);
+    w.update_mass(body);
+}
+
+template <int D>
+ForceId<D> World<D>::add_force(const ForceDefinition<D>& definition) {
+    validate(definition);
+    WorldState<D>& w = *state_;
+    ForceDefinition<D> resolved = definition;
+    if (auto* spring = std::get_if<Spring<D>>(&resolved.kind)) {
+        const std::uint32_t b = w.index(spring->b);
+        const Vec<D> from =
+            spring->a ? apply(w.frame_of(w.index(*spring->a)), spring->anchor_a) : spring->anchor_a;
+        if (!spring->length) spring->length = length(apply(w.frame_of(b), spring->anchor_b) - from);
+        if (spring->a) w.wake(spring->a->index);
+        w.wake(b);
+    } else if (auto* drag = std::get_if<Drag<D>>(&resolved.kind)) {
+        if (drag->body) w.index(*drag->body);
+    } else if (auto* force = std::get_if<ConstantForce<D>>(&resolved.kind)) {
+        w.wake(w.index(force->body));
+    } else if (auto* torque = std::get_if<ConstantTorque<D>>(&resolved.kind)) {
+        w.wake(w.index(torque->body));
+    } else if (auto* impulse = std::get_if<TimedImpulse<D>>(&resolved.kind)) {
+        w.index(impulse->body);
+    } else {
+        w.wake_all();
+    }
+    return w.forces.add(resolved);
+}
+
+template <int D>
+void World<D>::remove_force(ForceId<D> force) {
+    if (!state_->forces.contains(force)) throw Error("force: the handle names nothing in this world");
+    state_->wake_all();
+    state_->forces.remove(force);
+}
+
+template <int D>
+void World<D>::step(double dt) {
+    state_->step(dt);
+}
+
+template <int D>
+void World<D>::set_transform(BodyId<D> body, const Transform<D>& transform) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(body);
+    require_finite(transform.position, "position");
+    require_unit(transform.rotation, "rotation");
+    w.wake_neighbours(i);
+    BodyState<D>& s = w.states[i];
+    s.rotation = normalized(transform.rotation);
+    s.turns = 0;
+    s.position = transform.position + rotate(s.rotation, w.masses[i].center);
+    w.remove_contacts_of(i);
+    for (const ShapeId<D>& id : w.infos[i].shapes) {
+        w.remove_leaf(id.index);
+        w.insert_leaf(id.index);
+    }
+}
+
+template <int D>
+void World<D>::set_velocity(BodyId<D> body, const Vec<D>& velocity) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(velocity, "velocity");
+    if (state_->types[i] == BodyType::fixed) throw Error("velocity: a fixed body has none");
+    state_->states[i].velocity = free_components<D>(state_->masses[i].locks, velocity);
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::set_angular_velocity(BodyId<D> body, const Angular<D>& angular_velocity) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(angular_velocity, "angular_velocity");
+    if (state_->types[i] == BodyType::fixed) throw Error("angular_velocity: a fixed body has none");
+    state_->states[i].angular_velocity = free_spin<D>(state_->masses[i].locks, angular_velocity);
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::set_type(BodyId<D> body, BodyType type) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(body);
+    std::vector<ShapeDefinition<D>> definitions;
+    for (const ShapeId<D>& id : w.infos[i].shapes) {
+        definitions.push_back(w.shapes[id.index].definition);
+        if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
+            throw Error("type: a body with a plane must be fixed");
+    }
+    BodyDefinition<D> changed = w.infos[i].definition;
+    changed.type = type;
+    body_mass<D>(changed, definitions);
+    w.wake_neighbours(i);
+    w.wake_islands();
+    w.remove_contacts_of(i);
+    for (const ShapeId<D>& id : w.infos[i].shapes) w.remove_leaf(id.index);
+    w.types[i] = type;
+    w.infos[i].definition.type = type;
+    w.infos[i].awake = true;
+    std::erase(w.movable, i);
+    if (type == BodyType::fixed) {
+        w.states[i].velocity = {};
+        w.states[i].angular_velocity = {};
+    } else {
+        w.movable.push_back(i);
+    }
+    w.update_mass(i);
+    for (const ShapeId<D>& id : w.infos[i].shapes) w.insert_leaf(id.index);
+}
+
+template <int D>
+void World<D>::set_gravity_scale(BodyId<D> body, double scale) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(scale, "gravity_scale");
+    state_->masses[i].gravity_scale = scale;
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::set_damping(BodyId<D> body, double linear, double angular) {
+    const std::uint32_t i = state_->index(body);
+    require_not_negative(linear, "linear_damping");
+    require_not_negative(angular, "angular_damping");
+    state_->masses[i].linear_damping = linear;
+    state_->masses[i].angular_damping = angular;
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::set_locks(BodyId<D> body, const Locks& locks) {
+    const std::uint32_t i = state_->index(body);
+    state_->masses[i].locks = locks;
+    state_->states[i].velocity = free_components<D>(locks, state_->states[i].velocity);
+    state_->states[i].angular_velocity = free_spin<D>(locks, state_->states[i].angular_velocity);
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::set_mass_properties(BodyId<D> body, const MassProperties<D>& properties) {
+    const std::uint32_t i = state_->index(body);
+    require_positive(properties.mass, "mass");
+    require_finite(properties.center, "center");
+    validate_inertia(properties.inertia);
+    BodyDefinition<D>& d = state_->infos[i].definition;
+    d.mass = properties.mass;
+    d.center_of_mass = properties.center;
+    d.inertia = properties.inertia;
+    state_->update_mass(i);
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::set_user_data(BodyId<D> body, std::uint64_t user_data) {
+    state_->infos[state_->index(body)].definition.user_data = user_data;
+}
+
+template <int D>
+void World<D>::wake(BodyId<D> body) {
+    state_->wake(state_->index(body));
+    state_->wake_islands();
+}
+
+template <int D>
+void World<D>::put_to_sleep(BodyId<D> body) {
+    const std::uint32_t i = state_->index(body);
+    if (state_->types[i] != BodyType::dynamic) throw Error("body: only dynamic bodies sleep");
+    state_->infos[i].awake = false;
+    state_->states[i].velocity = {};
+    state_->states[i].angular_velocity = {};
+}
+
+template <int D>
+void World<D>::apply_force(BodyId<D> body, const Vec<D>& force) {
+    const std::uint32_t i = state_->index(body);
+    apply_force(body, force, state_->states[i].position);
+}
+
+template <int D>
+void World<D>::apply_force(BodyId<D> body, const Vec<D>& force, const Vec<D>& point) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(force, "force");
+    require_finite(point, "point");
+    if (state_->types[i] != BodyType::dynamic) return;
+    state_->applied[i].force += force;
+    state_->applied[i].torque += cross(point - state_->states[i].position, force);
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::apply_torque(BodyId<D> body, const Angular<D>& torque) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(torque, "torque");
+    if (state_->types[i] != BodyType::dynamic) return;
+    state_->applied[i].torque += torque;
+    state_->wake(i);
+}
+
+template <int D>
+void World<D>::apply_impulse(BodyId<D> body, const Vec<D>& impulse) {
+    const std::uint32_t i = state_->index(body);
+    apply_impulse(body, impulse, state_->states[i].position);
+}
+
+template <int D>
+void World<D>::apply_impulse(BodyId<D> body, const Vec<D>& impulse, const Vec<D>& point) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(impulse, "impulse");
+    require_finite(point, "point");
+    const BodyMass<D>& m = state_->masses[i];
+    state_->states[i].velocity += free_components<D>(m.locks, impulse * m.inverse_mass);
+    apply_angular_impulse(body, cross(point - state_->states[i].position, impulse));
+}
+
+template <int D>
+void World<D>::apply_angular_impulse(BodyId<D> body, const Angular<D>& impulse) {
+    const std::uint32_t i = state_->index(body);
+    require_finite(impulse, "impulse");
+    BodyState<D>& s = state_->states[i];
+    s.angular_velocity =
+        s.angular_velocity + world_inverse_inertia<D>(state_->masses[i], s.rotation) * impulse;
+    state_->wake(i);
+}
+
+// The members defined in this file; those that read the world are instantiated in reading.cpp.
+template class World<2>;
+template class World<3>;
+
+}  // namespace carom

@@ -1,0 +1,167 @@
+#include <algorithm>
+
+#include "world/state.hpp"
+
+namespace carom::detail {
+
+namespace {
+
+/// Boxes are made this much fatter than the shape, or an eighth of its size where that is less, so that a
+/// body that hardly moves keeps its box.
+constexpr double box_margin = 0.05;
+
+template <int D>
+Aabb<D> grown(const Aabb<D>& box, double margin, const Vec<D>& motion) {
+    Aabb<D> r;
+    for (int i = 0; i < D; ++i) {
+        r.lower[i] = box.lower[i] - margin + std::min(motion[i], 0.0);
+        r.upper[i] = box.upper[i] + margin + std::max(motion[i], 0.0);
+    }
+    return r;
+}
+
+}  // namespace
+
+template <int D>
+const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>& shape) const {
+    return (shape.in_fixed_tree ? fixed_tree : moving_tree).box(shape.leaf);
+}
+
+template <int D>
+void WorldState<D>::mark_moved(std::uint32_t shape) {
+    if (shapes[shape].moved) return;
+    shapes[shape].moved = true;
+    moved_shapes.push_back(shape);
+}
+
+template <int D>
+void WorldState<D>::insert_leaf(std::uint32_t shape) {
+    ShapeRecord<D>& s = shapes[shape];
+    s.in_fixed_tree = types[s.body] == BodyType::fixed;
+    s.leaf = (s.in_fixed_tree ? fixed_tree : moving_tree).insert(bounds(s.shape, frame_of(s.body)), shape);
+    mark_moved(shape);
+}
+
+template <int D>
+void WorldState<D>::remove_leaf(std::uint32_t shape) {
+    ShapeRecord<D>& s = shapes[shape];
+    (s.in_fixed_tree ? fixed_tree : moving_tree).remove(s.leaf);
+    s.leaf = Tree<D>::none;
+}
+
+/// Gives a fat box to every shape that may leave its own in this step.
+template <int D>
+void WorldState<D>::refresh_boxes(double dt) {
+    for (const std::uint32_t body : awake) {
+        const Transform<D> placed = frame_of(body);
+        const Vec<D> way = states[body].velocity * dt;
+        const double spin =
+            std::sqrt(angular_dot(states[body].angular_velocity, states[body].angular_velocity));
+        for (const ShapeId<D>& id : infos[body].shapes) {
+            ShapeRecord<D>& s = shapes[id.index];
+            const Aabb<D> tight = bounds(s.shape, placed);
+            const Vec<D> size = tight.upper - tight.lower;
+            double smallest = size.x, largest = size.x;
+            for (int i = 1; i < D; ++i) {
+                smallest = std::min(smallest, size[i]);
+                largest = std::max(largest, size[i]);
+            }
+            // A corner turns by spin · dt, at most once around; gravity may add to the way.
+            const double turning = std::min(spin * dt, 1.0) * std::min(masses[body].radius, largest);
+            const double falling = length(definition.gravity) * dt * dt;
+            const Aabb<D> swept = grown(tight, turning + falling, way);
+            if (s.leaf != Tree<D>::none && contains(moving_tree.box(s.leaf), swept)) continue;
+            const double margin = std::min(box_margin, 0.125 * smallest);
+            moving_tree.move(s.leaf, grown(swept, margin, way));
+            mark_moved(id.index);
+        }
+    }
+}
+
+template <int D>
+bool WorldState<D>::may_collide(std::uint32_t shape_a, std::uint32_t shape_b) const {
+    const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
+    if (a.body == b.body || infos[a.body].disabled || infos[b.body].disabled) return false;
+    if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
+    const Filter &fa = a.definition.filter, &fb = b.definition.filter;
+    if (fa.group == fb.group && fa.group != 0) return fa.group > 0;
+    return (fa.mask & fb.category) != 0 && (fb.mask & fa.category) != 0;
+}
+
+/// Every pair of a shape whose box is new and a shape that it overlaps becomes a contact. Pairs are sorted
+/// before they are taken up, so that the order of contacts depends on the shapes alone.
+template <int D>
+void WorldState<D>::find_pairs() {
+    new_pairs.clear();
+    for (const std::uint32_t shape : moved_shapes) {
+        const ShapeRecord<D>& s = shapes[shape];
+        if (!shape_slots.in_use(shape) || s.leaf == Tree<D>::none) continue;
+        const auto meet = [&](std::uint32_t other) {
+            const std::uint32_t a = std::min(shape, other), b = std::max(shape, other);
+            if (shape != other && may_collide(a, b) && !pairs.contains(a, b))
+                new_pairs.push_back(std::uint64_t{a} << 32 | b);
+        };
+        const Aabb<D>& box = fat_box(s);
+        moving_tree.query(box, meet);
+        if (!s.in_fixed_tree) fixed_tree.query(box, meet);
+    }
+    for (const std::uint32_t shape : moved_shapes) shapes[shape].moved = false;
+    moved_shapes.clear();
+
+    std::sort(new_pairs.begin(), new_pairs.end());
+    new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
+    for (const std::uint64_t pair : new_pairs) {
+        ContactRecord<D> c;
+        c.shape_a = static_cast<std::uint32_t>(pair >> 32);
+        c.shape_b = static_cast<std::uint32_t>(pair);
+        c.body_a = shapes[c.shape_a].body;
+        c.body_b = shapes[c.shape_b].body;
+        const Material &a = shapes[c.shape_a].definition.material, &b = shapes[c.shape_b].definition.material;
+        c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
+        c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
+        const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
+        c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
+        contacts.push_back(c);
+        pairs.insert(c.shape_a, c.shape_b);
+    }
+}
+
+template <int D>
+void WorldState<D>::drop_pairs() {
+    for (std::size_t i = 0; i < contacts.size();) {
+        const ContactRecord<D>& c = contacts[i];
+        const bool near = overlaps(fat_box(shapes[c.shape_a]), fat_box(shapes[c.shape_b]));
+        near ? void(++i) : remove_contact(i);
+    }
+}
+
+template <int D>
+void WorldState<D>::remove_contact(std::size_t contact) {
+    pairs.erase(contacts[contact].shape_a, contacts[contact].shape_b);
+    contacts[contact] = contacts.back();
+    contacts.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_contacts_of(std::uint32_t body) {
+    for (std::size_t i = 0; i < contacts.size();) {
+        const bool its_own = contacts[i].body_a == body || contacts[i].body_b == body;
+        its_own ? remove_contact(i) : void(++i);
+    }
+}
+
+#define CAROM_INSTANTIATE(D)                                                     \
+    template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const; \
+    template void WorldState<D>::mark_moved(std::uint32_t);                      \
+    template void WorldState<D>::insert_leaf(std::uint32_t);                     \
+    template void WorldState<D>::remove_leaf(std::uint32_t);                     \
+    template void WorldState<D>::refresh_boxes(double);                          \
+    template void WorldState<D>::find_pairs();                                   \
+    template void WorldState<D>::drop_pairs();                                   \
+    template void WorldState<D>::remove_contact(std::size_t);                    \
+    template void WorldState<D>::remove_contacts_of(std::uint32_t);
+CAROM_INSTANTIATE(2)
+CAROM_INSTANTIATE(3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom::detail

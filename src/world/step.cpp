@@ -1,0 +1,139 @@
+#include "math/check.hpp"
+#include "world/state.hpp"
+
+namespace carom::detail {
+
+/// One time step, stage by stage.
+template <int D>
+void WorldState<D>::step(double dt) {
+    require_positive(dt, "dt");
+    require_in(dt, 0, 1, "dt");
+
+    begin_step(dt);             // timed impulses; which bodies are awake
+    refresh_boxes(dt);          // broad phase: fat boxes that were left are renewed
+    find_pairs();               //   new neighbours become contacts
+    drop_pairs();               //   those that parted are forgotten
+    collide(dt);                // narrow phase: manifolds, impulses carried over
+    wake_touched(dt);           // sleepers that are being hit
+    sum_forces();               // gravity, the user's forces, generators
+    solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
+    fly_free_bodies(dt);        // all others: the integrator
+    move_kinematic_bodies(dt);  // what only the user moves
+    finish_bodies();            // quarantine, list of moved bodies
+    fall_asleep(dt);            // islands at rest
+
+    time += dt;
+    last_step = dt;
+    ++step_count;
+}
+
+template <int D>
+void WorldState<D>::begin_step(double) {
+    forces.each_change(
+        time - last_step, time, [&](std::uint32_t body) { wake(body); }, [&] { wake_all(); });
+    forces.take_impulses(time, [&](BodyId<D> body, const Vec<D>& impulse, const auto& point) {
+        const std::uint32_t i = body.index;
+        if (masses[i].inverse_mass == 0 || infos[i].disabled) return;
+        wake(i);
+        const Vec<D> arm = point ? rotate(states[i].rotation, *point - masses[i].center) : Vec<D>{};
+        states[i].velocity += free_components<D>(masses[i].locks, impulse * masses[i].inverse_mass);
+        states[i].angular_velocity =
+            states[i].angular_velocity +
+            world_inverse_inertia<D>(masses[i], states[i].rotation) * cross(arm, impulse);
+    });
+    wake_islands();
+
+    awake.clear();
+    for (const std::uint32_t i : movable) {
+        if (is_moving(i)) awake.push_back(i);
+    }
+    before.clear();
+    for (const std::uint32_t i : awake) before.push_back(states[i]);
+}
+
+template <int D>
+void WorldState<D>::sum_forces() {
+    loads.resize(states.size());
+    varies.resize(states.size());
+    for (const std::uint32_t i : awake) varies[i] = 0;
+    forces.mark_fields(time, varies);
+    LoadModel<D>{definition.gravity, applied, awake, forces}.sum({states, masses}, time, loads);
+}
+
+template <int D>
+void WorldState<D>::solve_contacts(double dt) {
+    active.clear();
+    touched.resize(states.size());
+    for (const std::uint32_t i : awake) touched[i] = 0;
+    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+        const ContactRecord<D>& c = contacts[i];
+        const bool moves_a = types[c.body_a] == BodyType::dynamic && is_awake(c.body_a);
+        const bool moves_b = types[c.body_b] == BodyType::dynamic && is_awake(c.body_b);
+        if (c.count == 0 || !(moves_a || moves_b)) continue;
+        active.push_back(i);
+        touched[c.body_a] = touched[c.body_b] = 1;
+    }
+    solver.run({states, masses, types, loads, contacts, active, dt, definition.substeps,
+                definition.restitution_threshold});
+}
+
+template <int D>
+void WorldState<D>::fly_free_bodies(double dt) {
+    flying.clear();
+    for (const std::uint32_t i : awake) {
+        if (types[i] == BodyType::dynamic && !touched[i]) flying.push_back(i);
+    }
+    const LoadModel<D> model{definition.gravity, applied, flying, forces};
+    fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);
+    for (const std::uint32_t i : awake) applied[i] = {};
+}
+
+template <int D>
+void WorldState<D>::move_kinematic_bodies(double dt) {
+    for (const std::uint32_t i : awake) {
+        if (types[i] != BodyType::kinematic) continue;
+        states[i].position += dt * states[i].velocity;
+        turn<D>(states[i], states[i].angular_velocity * dt);
+    }
+}
+
+namespace {
+
+template <int D>
+bool finite(const BodyState<D>& s) {
+    double sum = dot(s.position, s.position) + dot(s.velocity, s.velocity) +
+                 angular_dot(s.angular_velocity, s.angular_velocity);
+    if constexpr (D == 2) {
+        sum += s.rotation.c + s.rotation.s;
+    } else {
+        sum += s.rotation.x + s.rotation.y + s.rotation.z + s.rotation.w;
+    }
+    return is_finite(sum);
+}
+
+}  // namespace
+
+template <int D>
+void WorldState<D>::finish_bodies() {
+    moved_bodies.clear();
+    quarantined.clear();
+    for (std::size_t k = 0; k < awake.size(); ++k) {
+        const std::uint32_t i = awake[k];
+        const BodyId<D> id = body_slots.template id<BodyId<D>>(i);
+        if (!finite(states[i])) {
+            states[i] = before[k];
+            states[i].velocity = {};
+            states[i].angular_velocity = {};
+            infos[i].disabled = true;
+            remove_contacts_of(i);
+            quarantined.push_back(id);
+            continue;
+        }
+        moved_bodies.push_back({id, infos[i].definition.user_data, frame_of(i)});
+    }
+}
+
+template void WorldState<2>::step(double);
+template void WorldState<3>::step(double);
+
+}  // namespace carom::detail

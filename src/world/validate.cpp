@@ -1,0 +1,86 @@
+#include "world/validate.hpp"
+
+#include "geometry/shape.hpp"
+#include "math/check.hpp"
+#include "math/dim.hpp"
+
+namespace carom::detail {
+
+template <int D>
+void validate(const WorldDefinition<D>& w) {
+    require_finite(w.gravity, "gravity");
+    require_in(w.substeps, 1, 64, "substeps");
+    require_not_negative(w.restitution_threshold, "restitution_threshold");
+}
+
+void validate_inertia(double inertia) { require_positive(inertia, "inertia"); }
+
+void validate_inertia(const Symmetric3<double>& inertia) {
+    require_finite(inertia, "inertia");
+    if (!is_positive_definite(inertia)) throw Error("inertia: the matrix is not positive definite");
+}
+
+template <int D>
+void validate(const BodyDefinition<D>& b) {
+    require_finite(b.position, "position");
+    require_unit(b.rotation, "rotation");
+    require_finite(b.velocity, "velocity");
+    require_finite(b.angular_velocity, "angular_velocity");
+    if (b.mass) require_positive(*b.mass, "mass");
+    if (b.center_of_mass) require_finite(*b.center_of_mass, "center_of_mass");
+    if (b.inertia) validate_inertia(*b.inertia);
+    require_finite(b.gravity_scale, "gravity_scale");
+    require_not_negative(b.linear_damping, "linear_damping");
+    require_not_negative(b.angular_damping, "angular_damping");
+    for (std::size_t i = 0; i < b.shapes.size(); ++i) {
+        within("shapes[" + std::to_string(i) + "].", [&] {
+            const Shape<D> shape = make_shape(b.shapes[i]);
+            if (shape.kind == ShapeKind::plane && b.type != BodyType::fixed)
+                throw Error("geometry: a plane needs a fixed body");
+        });
+    }
+    body_mass<D>(b, b.shapes);
+}
+
+template <int D>
+void validate(const ForceDefinition<D>& f) {
+    if (!(f.from >= 0)) refuse("from", f.from, "is negative or not a number");
+    if (!(f.to >= f.from)) refuse("to", f.to, "lies before `from`");
+    const auto check = [](const auto& kind) {
+        using Kind = std::decay_t<decltype(kind)>;
+        if constexpr (requires { kind.value; }) require_finite(kind.value, "value");
+        if constexpr (requires { kind.point; }) {
+            if (kind.point) require_finite(*kind.point, "point");
+        }
+        if constexpr (std::is_same_v<Kind, TimedImpulse<D>>) require_not_negative(kind.at, "at");
+        if constexpr (std::is_same_v<Kind, Drag<D>>) {
+            require_not_negative(kind.linear, "linear");
+            require_not_negative(kind.quadratic, "quadratic");
+        }
+        if constexpr (std::is_same_v<Kind, Wind<D>>) {
+            require_finite(kind.velocity, "velocity");
+            require_not_negative(kind.density, "density");
+        }
+        if constexpr (std::is_same_v<Kind, PointGravity<D>>) {
+            require_finite(kind.center, "center");
+            require_finite(kind.gm, "gm");
+        }
+        if constexpr (std::is_same_v<Kind, Spring<D>>) {
+            require_finite(kind.anchor_a, "anchor_a");
+            require_finite(kind.anchor_b, "anchor_b");
+            require_not_negative(kind.stiffness, "stiffness");
+            require_not_negative(kind.damping, "damping");
+            if (kind.length) require_not_negative(*kind.length, "length");
+        }
+    };
+    std::visit(check, f.kind);
+}
+
+template void validate(const WorldDefinition<2>&);
+template void validate(const WorldDefinition<3>&);
+template void validate(const BodyDefinition<2>&);
+template void validate(const BodyDefinition<3>&);
+template void validate(const ForceDefinition<2>&);
+template void validate(const ForceDefinition<3>&);
+
+}  // namespace carom::detail

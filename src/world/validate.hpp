@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carom/body.hpp"
+#include "carom/error.hpp"
+#include "carom/forces.hpp"
+#include "carom/world.hpp"
+
+namespace carom::detail {
+
+/// Calls `work`; an `Error` from it gets `prefix` in front of its message.
+template <class Work>
+auto within(const std::string& prefix, Work&& work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        throw Error(prefix + error.what());
+    }
+}
+
+/// Each throws `Error` that names the field.
+template <int D>
+void validate(const WorldDefinition<D>& definition);
+template <int D>
+void validate(const BodyDefinition<D>& definition);
+/// Numbers only; whether the bodies exist is the world's to check.
+template <int D>
+void validate(const ForceDefinition<D>& definition);
+
+void validate_inertia(double inertia);
+void validate_inertia(const Symmetric3<double>& inertia);
+
+/// Mass properties of a body with these shapes, overrides included. Throws `Error` when a dynamic body would
+/// have no mass.
+template <int D>
+MassProperties<D> body_mass(const BodyDefinition<D>& definition,
+                            const std::vector<ShapeDefinition<D>>& shapes);
+
+}  // namespace carom::detail

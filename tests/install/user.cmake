@@ -1,0 +1,5 @@
+cmake_minimum_required(VERSION 3.25)
+project(user CXX)
+find_package(carom 0.1 REQUIRED)
+add_executable(user main.cpp)
+target_link_libraries(user PRIVATE carom::carom)
