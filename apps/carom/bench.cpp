@@ -157,12 +157,12 @@ void add_bench(CLI::App& program, int& status) {
         ->type_name("1,2")
         ->delimiter(',')
         ->expected(1)
-        ->check(CLI::Range(1, 1024));
+        ->check(CLI::Range(1, 1024).description(""));
     command->add_option("--repeat", options->repeat, "How often each is run")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
+        ->check(CLI::Range(1, 1000).description(""));
     command->add_option("--steps", options->steps, "Steps to run; the scene's own number when left out")
-        ->check(CLI::Range(2, 1'000'000));
+        ->check(CLI::Range(2, 1'000'000).description(""));
     command->add_flag("--list", options->list, "Name the scenes and end");
     command->add_flag("--json", options->json, "Print an array of objects");
     command->callback([options, &status] { status = run_benchmarks(*options); });

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <exception>
 #include <new>
 #include <system_error>
 
@@ -26,7 +27,7 @@ int with_output_written(int status) {
 int run_program(int count, char** arguments) {
     CLI::App program("Carom: rigid-body physics for games, in 2D and in 3D", "carom");
     program.set_version_flag("--version", fmt::format("carom {}", version));
-    program.require_subcommand(1);
+    program.require_subcommand(0, 1);
     int status = fine;
     add_run(program, status);
     add_validate(program, status);
@@ -36,6 +37,7 @@ int run_program(int count, char** arguments) {
     program.footer("Exit status: 0 fine, 1 a failed check, 2 bad input.");
     try {
         program.parse(count, arguments);
+        if (program.get_subcommands().empty()) return complain("a command is missing; see carom help");
         return with_output_written(status);
     } catch (const CLI::Success& asked) {  // --help, --version
         return with_output_written(program.exit(asked));
@@ -45,6 +47,8 @@ int run_program(int count, char** arguments) {
         return complain(error.what());
     } catch (const std::bad_alloc&) {
         return complain("there is not enough memory for this");
+    } catch (const std::exception& error) {  // of the standard library, for example a closed output
+        return complain(error.what());
     }
 }
 

@@ -122,12 +122,12 @@ void add_run(CLI::App& program, int& status) {
     command->add_option("SCENE", options->scene, "Scene file (JSON)")->required();
     command->add_option("--steps", options->steps, "How many steps")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0, 100'000'000).description(""));
     command
         ->add_option("--threads", options->threads,
                      "Most threads to use; this version uses one whatever is given")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1024));
+        ->check(CLI::Range(1, 1024).description(""));
     command->add_option("--trace", options->trace, "Write a row a body a step to FILE, comma-separated")
         ->type_name("FILE.csv");
     command

@@ -39,47 +39,72 @@ bool normalize_weights(Simplex<D>& s, double least_sum) {
     return true;
 }
 
-/// Finds the weights of the point nearest to the origin in the flat that the vertices span, and tells if it
-/// lies within the simplex. They are ratios of lengths, areas or volumes, not of Gram determinants, which
-/// would square the error of a thin simplex.
+template <int D>
+bool solve_edge(Simplex<D>& s) {
+    const Vec<D> edge = s[1] - s[0];
+    s.weights[0] = dot(s[1], edge);
+    s.weights[1] = -dot(s[0], edge);
+    if (!normalize_weights(s, 0)) return false;
+    s.closest = s.weights[0] * s[0] + s.weights[1] * s[1];
+    // What rounding left along the edge would be a large part of a small distance.
+    s.closest -= dot(s.closest, edge) / length_squared(edge) * edge;
+    return true;
+}
+
+/// In a plane through a corner of a triangle, two of whose edges are e and f, the point nearest to the origin
+/// is corner + s·e + t·f. The corner is the one opposite the longest edge: there e and f are furthest from
+/// parallel, and n = e × f and all that depends on it are as exact as they can be for a needle.
+bool solve_triangle(Simplex<3>& simplex) {
+    int corner = 0;
+    double longest = -1;
+    for (int i = 0; i < 3; ++i) {
+        const double opposite = length_squared(simplex[(i + 1) % 3] - simplex[(i + 2) % 3]);
+        if (opposite > longest) {
+            longest = opposite;
+            corner = i;
+        }
+    }
+    const Vec3& p = simplex[corner];
+    const Vec3 e = simplex[(corner + 1) % 3] - p, f = simplex[(corner + 2) % 3] - p, n = cross(e, f);
+    const double square = length_squared(n);
+    if (!(square > 0)) return false;
+    const double s = dot(n, cross(f, p)) / square, t = dot(n, cross(p, e)) / square;
+    if (!(s >= 0 && t >= 0 && s + t <= 1)) return false;
+    simplex.weights[corner] = 1 - s - t;
+    simplex.weights[(corner + 1) % 3] = s;
+    simplex.weights[(corner + 2) % 3] = t;
+    simplex.closest = dot(n, p) / square * n;
+    return true;
+}
+
+/// Is the origin within a simplex of as many corners as it can have? Its weights are the areas or volumes
+/// that it spans with the other corners.
+bool solve_full(Simplex<2>& s, double extent) {
+    s.weights = {cross(s[1], s[2]), cross(s[2], s[0]), cross(s[0], s[1])};
+    return normalize_weights(s, flat * extent * extent);
+}
+bool solve_full(Simplex<3>& s, double extent) {
+    s.weights = {determinant(s[1], s[2], s[3]), -determinant(s[0], s[2], s[3]), determinant(s[0], s[1], s[3]),
+                 -determinant(s[0], s[1], s[2])};
+    return normalize_weights(s, flat * extent * extent * extent);
+}
+
+/// Finds the point nearest to the origin in the flat that the vertices span, and tells if it lies within the
+/// simplex.
 template <int D>
 bool solve_whole(Simplex<D>& s) {
+    if (s.count == 1) {
+        s.weights[0] = 1;
+        s.closest = s[0];
+        return true;
+    }
+    if (s.count == 2) return solve_edge(s);
+    if constexpr (D == 3)
+        if (s.count == 3) return solve_triangle(s);
     double extent = 0;
     for (int i = 0; i < s.count; ++i) extent = std::max(extent, length(s[i]));
-    switch (s.count) {
-        case 1:
-            s.weights[0] = 1;
-            break;
-        case 2: {
-            const Vec<D> edge = s[1] - s[0];
-            s.weights[0] = dot(s[1], edge);
-            s.weights[1] = -dot(s[0], edge);
-            if (!normalize_weights(s, 0)) return false;
-            break;
-        }
-        case 3:
-            if constexpr (D == 2) {
-                s.weights = {cross(s[1], s[2]), cross(s[2], s[0]), cross(s[0], s[1])};
-                s.closest = {};
-                return normalize_weights(s, flat * extent * extent);
-            } else {
-                const Vec3 normal = cross(s[1] - s[0], s[2] - s[0]);
-                s.weights = {determinant(normal, s[1], s[2]), determinant(normal, s[2], s[0]),
-                             determinant(normal, s[0], s[1]), 0};
-                if (!normalize_weights(s, 0)) return false;
-            }
-            break;
-        case 4:
-            if constexpr (D == 3) {
-                s.weights = {determinant(s[1], s[2], s[3]), -determinant(s[0], s[2], s[3]),
-                             determinant(s[0], s[1], s[3]), -determinant(s[0], s[1], s[2])};
-                s.closest = {};
-                return normalize_weights(s, flat * extent * extent * extent);
-            }
-    }
     s.closest = {};
-    for (int i = 0; i < s.count; ++i) s.closest += s.weights[i] * s[i];
-    return true;
+    return solve_full(s, extent);
 }
 
 /// The smallest part of the simplex that holds its point closest to the origin. Only parts with the newest

@@ -10,15 +10,19 @@ template <NearestRoutine3 nearest>
 Manifold<3> collide(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a, double reach) {
     const Pair3 pair{a, b, b_in_a};
     const double limit = reach + core_radius(a) + core_radius(b);
-    const Nearest3 found = nearest(pair, {limit, true});
-    return found.distance > limit ? Manifold<3>{} : contact_patch(pair, found, reach);
+    Nearest3 found = nearest(pair, {limit, true});
+    if (found.distance > limit) return {};
+    if (const auto patch = contact_patch(pair, found, reach)) return *patch;
+
+    found = made_certain(pair, nearest(pair, {limit, false}));
+    return found.distance > limit ? Manifold<3>{} : *contact_patch(pair, found, reach);
 }
 
 template <NearestRoutine3 nearest>
 std::optional<Separation<3>> separate(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a) {
     const Pair3 pair{a, b, b_in_a};
     Nearest3 found = nearest(pair, {std::numeric_limits<double>::infinity(), false});
-    if (!found.certain) found = closest_points(pair, found);
+    if (found.distance > 0) found = made_certain(pair, found);
     return Separation<3>{found.normal, found.distance - core_radius(a) - core_radius(b)};
 }
 

@@ -66,6 +66,14 @@ class Forces {
         }
     }
 
+    /// Visits every generator, and whether its timed impulse has been given.
+    template <class Visit>
+    void each(Visit&& visit) const {
+        for (const Generator& g : generators_) {
+            if (g.in_use) visit(g.definition, g.fired);
+        }
+    }
+
     /// Energy stored in springs and point gravities, J.
     double potential(const BodyView<D>& bodies, double time) const;
 

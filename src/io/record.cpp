@@ -1,6 +1,7 @@
 #include "io/record.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/shape.hpp"
 
@@ -95,15 +96,18 @@ ReplayBody body_of(const World<D>& world, BodyId<D> id, const std::string& label
     return body;
 }
 
-/// The springs of the scene, whose bodies are indices already.
+/// The springs that act for the whole run, a replay's links being there from its first frame to its last. The
+/// bodies that they join are indices already.
 template <int D>
 std::vector<ReplayLink> links_of(const SceneData<D>& data) {
     std::vector<ReplayLink> links;
-    for (const ForceDefinition<D>& force : data.forces)
-        if (const auto* spring = std::get_if<Spring<D>>(&force.kind))
-            links.push_back({"spring", spring->a ? static_cast<std::int32_t>(spring->a->index) : -1,
-                             static_cast<std::int32_t>(spring->b.index), vector_of(spring->anchor_a),
-                             vector_of(spring->anchor_b)});
+    for (const ForceDefinition<D>& force : data.forces) {
+        const auto* spring = std::get_if<Spring<D>>(&force.kind);
+        if (!spring || force.from > 0 || force.to < std::numeric_limits<double>::infinity()) continue;
+        links.push_back({"spring", spring->a ? static_cast<std::int32_t>(spring->a->index) : -1,
+                         static_cast<std::int32_t>(spring->b.index), vector_of(spring->anchor_a),
+                         vector_of(spring->anchor_b)});
+    }
     return links;
 }
 

@@ -56,14 +56,15 @@ Reduced reduce(double x) {
     const auto bit = [&](int place) { return static_cast<int>(product[place / 32] >> (place % 32) & 1u); };
     int quadrant = 2 * bit(point + 1) + bit(point);
     const bool round_up = bit(point - 1) != 0;
-    // The fraction, less 1 when it was at least 1/2, summed from its largest word down.
+    // The fraction, less 1 when it was at least 1/2 (then negated), summed from its largest word down.
     DoubleDouble fraction;
+    double weight = std::ldexp(1.0, 32 * (point / 32) - point);
     for (int i = point / 32; i >= 0; --i) {
         std::uint32_t word = round_up ? ~product[i] : product[i];
         if (i == point / 32) word &= (std::uint32_t{1} << (point % 32)) - 1;
-        const DoubleDouble sum =
-            two_sum(fraction.high, std::ldexp(static_cast<double>(word), 32 * i - point));
+        const DoubleDouble sum = two_sum(fraction.high, word * weight);
         fraction = {sum.high, fraction.low + sum.low};
+        weight *= 0x1p-32;
     }
     fraction = ordered_sum(fraction.high, fraction.low);
     DoubleDouble rest = two_product(fraction.high, half_pi.high);
@@ -165,6 +166,8 @@ double atan2(double y, double x) {
     const double larger = std::fabs(x) > std::fabs(y) ? std::fabs(x) : std::fabs(y);
     if (!(std::fabs(x) <= largest && std::fabs(y) <= largest)) return not_a_number;
     if (larger == 0) return 0;
+    // So flat that nothing is left to compute; what follows may scale y down to nothing.
+    if (std::fabs(y) < 0x1p-60 * larger) return x > 0 ? y / x : y < 0 ? -pi : pi;
     if (larger < 1e-100 || larger > 1e100) {
         int exponent;
         std::frexp(larger, &exponent);

@@ -54,6 +54,8 @@ struct ContactRows {
     Vec<D, F> normal{};
     std::array<NormalRow<D, F>, capacity> points{};
     Softness<F> soft{};
+    F lead{};  ///< how much less a gap closes in a sub-step than h · speed, because the speed is still
+               ///< growing
 
     std::array<Vec<D, F>, D - 1> tangents{};
     Vec<D, F> arm_a{}, arm_b{};  ///< of the patch
@@ -137,13 +139,16 @@ void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const
     for (NormalRow<D, F>& p : c.points) {
         const F s = gap(c, p, a, b);
         const auto apart = s > F(0);
-        F bias = s * sub.inverse_length, scale = F(1), keep = F(0);
+        F bias = (s + c.lead) * sub.inverse_length, scale = F(1), keep = F(0);
         if constexpr (biased) {
             bias = select(apart, bias, maximum(c.soft.mass_scale * c.soft.bias_rate * s, -sub.push_speed));
             scale = select(apart, F(1), c.soft.mass_scale);
             keep = select(apart, F(0), c.soft.impulse_scale);
         } else {
             bias = select(apart, bias, F(0));
+            // A gap that is still open after this sub-step is the business of the next one.
+            scale = select(apart, select(p.impulse > F(0), F(1), F(0)), F(1));
+            bias = bias * scale;
         }
         const F speed = dot(c.normal, relative_velocity(a, b, p.arm_a, p.arm_b));
         const F next = maximum(p.impulse - p.mass * (scale * speed + bias) - keep * p.impulse, F(0));

@@ -42,6 +42,7 @@ void Solver<D>::run(const SolverInput<D>& input) {
     gather_bodies(input);
     prepare(input);
     begin_warm();
+    look_ahead();
     find_impacts(input);
     for (int i = 0; i < input.substeps; ++i) {
         integrate_velocities();
@@ -56,7 +57,7 @@ void Solver<D>::run(const SolverInput<D>& input) {
 
 template <int D>
 std::uint32_t Solver<D>::slot(const SolverInput<D>& input, std::uint32_t body) {
-    if (input.types[body] == BodyType::fixed) return 0;
+    if (!input.moving[body]) return 0;
     if (slot_of_[body] == 0) {
         slot_of_[body] = static_cast<std::uint32_t>(bodies_.size());
         bodies_.push_back(body);
@@ -88,6 +89,8 @@ void Solver<D>::load_body(const SolverInput<D>& input, std::uint32_t body, Body&
     const BodyMass<D>& mass = input.masses[body];
     motion.v = narrow<float>(state.velocity);
     motion.w = narrow<float>(state.angular_velocity);
+    drive.lost = narrow<float>(state.velocity - narrow<double>(motion.v));
+    drive.lost_spin = narrow<float>(Angular<D>(state.angular_velocity - narrow<double>(motion.w)));
     if (mass.inverse_mass == 0) return;
 
     Vec<D> one{};
@@ -168,21 +171,45 @@ void Solver<D>::prepare_contact(const ContactRecord<D>& record, Rows& rows, std:
 /// the next needs no pass over the constraints.
 template <int D>
 void Solver<D>::begin_warm() {
-    std::vector<Body>& warm = motions_;
-    const std::vector<Body> kept = warm;
-    for (Body& m : warm) m = {};
+    kept_ = motions_;
+    for (Body& m : motions_) m = {};
+    Body still;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const auto [a, b] = pairs_[i];
-        warm_start(rows_[i], warm[a], warm[b], weights_[a], weights_[b]);
+        warm_start(rows_[i], motion(a, still), motion(b, still), weights_[a], weights_[b]);
     }
     for (std::size_t s = 1; s < drives_.size(); ++s) {
         Drive& d = drives_[s];
-        d.warm = warm[s].v;
-        d.warm_spin = warm[s].w;
+        d.warm = motions_[s].v;
+        d.warm_spin = motions_[s].w;
         d.change = d.warm + h_ * d.acceleration;
         d.spin_change = d.warm_spin + h_ * d.spin_acceleration;
     }
-    warm = kept;
+    std::swap(motions_, kept_);
+}
+
+/// In a sub-step a gap s changes by h v + ½ h² a, with v the speed at its end and a = −Δv/h (see
+/// finish_substep): with v alone, bodies in flight would seem to meet too early. The lead −½ h Δv is what the
+/// steady change of the relative speed makes, and no more than what the outer forces alone would: none at
+/// rest.
+template <int D>
+void Solver<D>::look_ahead() {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Drive &a = drives_[pairs_[i].a], &b = drives_[pairs_[i].b];
+        const float outer = -0.5f * h_ * h_ * dot(rows_[i].normal, b.acceleration - a.acceleration);
+        const float steady = -0.5f * h_ * dot(rows_[i].normal, b.change - a.change);
+        rows_[i].lead = std::max(0.0f, std::min(outer, steady));
+    }
+}
+
+/// Adds a change that is small beside the velocity. What rounding cuts off is kept for the next time, so that
+/// a steady force is not lost bit by bit (Kahan 1965).
+template <class V>
+V add_precisely(const V& start, const V& change, V& lost) {
+    const V whole = change + lost;
+    const V sum = start + whole;
+    lost = whole - (sum - start);
+    return sum;
 }
 
 template <int D>
@@ -192,18 +219,31 @@ void Solver<D>::integrate_velocities() {
         Drive& d = drives_[s];
         d.start = m.v * d.damping;
         d.start_spin = m.w * d.spin_damping;
-        m.v = d.start + h_ * d.acceleration + d.warm;
-        m.w = d.start_spin + h_ * d.spin_acceleration + d.warm_spin;
+        d.lost_before = d.lost;
+        d.lost_spin_before = d.lost_spin;
+        m.v = add_precisely(d.start, h_ * d.acceleration + d.warm, d.lost);
+        m.w = add_precisely(d.start_spin, Angular<D, float>(h_ * d.spin_acceleration + d.warm_spin),
+                            d.lost_spin);
     }
+}
+
+/// What stands still is a fresh body for every row, so that not even a non-finite impulse passes through it.
+template <int D>
+typename Solver<D>::Body& Solver<D>::motion(std::uint32_t slot, Body& still) {
+    if (slot != 0) return motions_[slot];
+    still = {};
+    return still;
 }
 
 template <int D>
 template <bool biased>
 void Solver<D>::solve() {
+    Body still;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const auto [a, b] = pairs_[i];
-        solve_normals<biased>(rows_[i], motions_[a], motions_[b], weights_[a], weights_[b], sub_);
-        if constexpr (!biased) solve_friction(rows_[i], motions_[a], motions_[b], weights_[a], weights_[b]);
+        Body &ma = motion(a, still), &mb = motion(b, still);
+        solve_normals<biased>(rows_[i], ma, mb, weights_[a], weights_[b], sub_);
+        if constexpr (!biased) solve_friction(rows_[i], ma, mb, weights_[a], weights_[b]);
     }
 }
 
@@ -233,8 +273,8 @@ void Solver<D>::finish_substep() {
     for (std::size_t s = 1; s < motions_.size(); ++s) {
         Body& m = motions_[s];
         Drive& d = drives_[s];
-        const Vec<D, float> change = m.v - d.start;
-        const Angular<D, float> spin_change = m.w - d.start_spin;
+        const Vec<D, float> change = (m.v - d.start) + (d.lost - d.lost_before);
+        const Angular<D, float> spin_change = (m.w - d.start_spin) + (d.lost_spin - d.lost_spin_before);
         d.warm = change - h_ * d.acceleration;
         d.warm_spin = spin_change - h_ * d.spin_acceleration;
         const auto product = [](const auto& a, const auto& b) { return dot(a, b); };
@@ -293,7 +333,8 @@ void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
     Rows& rows = rows_[impact.row];
     NormalRow<D, float>& p = rows.points[impact.point];
     const auto [a, b] = pairs_[impact.row];
-    Body &ma = motions_[a], &mb = motions_[b];
+    Body still;
+    Body &ma = motion(a, still), &mb = motion(b, still);
 
     const float speed = dot(rows.normal, relative_velocity(ma, mb, p.arm_a, p.arm_b));
     const float blow = std::max(p.mass * (static_cast<float>(rebound.speed) - speed), -p.total_impulse);
@@ -333,8 +374,8 @@ void Solver<D>::store(const SolverInput<D>& input) {
         const Body& m = motions_[s];
         state.position += narrow<double>(m.moved);
         turn<D>(state, narrow<double>(m.turned));
-        state.velocity = narrow<double>(m.v);
-        state.angular_velocity = narrow<double>(m.w);
+        state.velocity = narrow<double>(m.v) + narrow<double>(drives_[s].lost);
+        state.angular_velocity = narrow<double>(m.w) + narrow<double>(drives_[s].lost_spin);
     }
 }
 

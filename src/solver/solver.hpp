@@ -18,7 +18,9 @@ struct SolverInput {
     std::span<BodyState<D>> states;  ///< of all bodies; those in contact are moved on
     std::span<const BodyMass<D>> masses;
     std::span<const BodyType> types;
-    std::span<const Load<D>> loads;         ///< at the start of the step
+    std::span<const std::uint8_t>
+        moving;                      ///< awake dynamic bodies and moving kinematic ones; others stand still
+    std::span<const Load<D>> loads;  ///< at the start of the step
     std::span<ContactRecord<D>> contacts;   ///< all; impulses are read and written
     std::span<const std::uint32_t> active;  ///< indices of the contacts that carry points
     double step = 0;
@@ -47,11 +49,14 @@ class Solver {
         Angular<D, float> spin_change{};
         Vec<D, float> start{};  ///< velocity at the start of this sub-step, after damping
         Angular<D, float> start_spin{};
+        Vec<D, float> lost{},
+            lost_before{};  ///< what rounding cut off the velocity, now and before this sub-step
+        Angular<D, float> lost_spin{}, lost_spin_before{};
         float damping = 1, spin_damping = 1;  ///< factors of a sub-step
     };
 
     struct Pair {
-        std::uint32_t a, b;  ///< slots; slot 0 stands for everything fixed
+        std::uint32_t a, b;  ///< slots; slot 0 stands for all that stands still
     };
     /// A point that may bounce, as it was at the start of the step.
     struct Impact {
@@ -68,7 +73,9 @@ class Solver {
     void prepare(const SolverInput<D>& input);
     void prepare_contact(const ContactRecord<D>& record, Rows& rows, std::uint32_t a, std::uint32_t b) const;
     void begin_warm();
+    void look_ahead();
     void find_impacts(const SolverInput<D>& input);
+    Body& motion(std::uint32_t slot, Body& still);
     void integrate_velocities();
     template <bool biased>
     void solve();
@@ -83,7 +90,7 @@ class Solver {
     Softness<float> soft_{}, soft_fixed_{};
     std::vector<std::uint32_t> slot_of_;  ///< by body index; 0: none
     std::vector<std::uint32_t> bodies_;   ///< body index by slot; the first is unused
-    std::vector<Body> motions_;
+    std::vector<Body> motions_, kept_;
     std::vector<Weight<D, float>> weights_;
     std::vector<Drive> drives_;
     std::vector<Pair> pairs_;

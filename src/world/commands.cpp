@@ -118,6 +118,8 @@ void World<D>::remove_body(BodyId<D> body) {
     }
     w.forces.remove_all_of(body);
     w.infos[i] = {};
+    w.masses[i] = {};
+    std::erase(w.to_wake, i);
     std::erase(w.movable, i);
     std::erase(w.body_ids, body);
     w.body_slots.release(i);
@@ -315,6 +317,7 @@ void World<D>::put_to_sleep(BodyId<D> body) {
     const std::uint32_t i = state_->index(body);
     if (state_->types[i] != BodyType::dynamic) throw Error("body: only dynamic bodies sleep");
     state_->infos[i].awake = false;
+    std::erase(state_->to_wake, i);
     state_->states[i].velocity = {};
     state_->states[i].angular_velocity = {};
 }

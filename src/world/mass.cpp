@@ -68,6 +68,7 @@ MassProperties<D> body_mass(const BodyDefinition<D>& definition,
     const MassProperties<D> p = resolve<D>(definition, shapes);
     if (definition.type == BodyType::dynamic && !(p.mass > 0))
         throw Error("mass: a dynamic body needs a mass, or shapes with a density that is not zero");
+    if (definition.type == BodyType::dynamic) require_in(p.mass, 1e-30, 1e30, "mass");
     return p;
 }
 

@@ -1,5 +1,4 @@
 #include "carom/error.hpp"
-#include "core/hash.hpp"
 #include "world/state.hpp"
 
 // What the user reads between steps.
@@ -182,67 +181,6 @@ Energy World<D>::energy() const {
     }
     sum.potential += state_->forces.potential({state_->states, state_->masses}, state_->time);
     return sum;
-}
-
-namespace {
-
-template <int D>
-void add(Hash& hash, const Vec<D>& v) {
-    for (int i = 0; i < D; ++i) hash.add(v[i]);
-}
-template <int D>
-void add(Hash& hash, const Vec<D, float>& v) {
-    for (int i = 0; i < D; ++i) hash.add(v[i]);
-}
-void add(Hash& hash, double v) { hash.add(v); }
-void add(Hash& hash, float v) { hash.add(v); }
-void add(Hash& hash, const Rotation2& q) {
-    hash.add(q.c);
-    hash.add(q.s);
-}
-void add(Hash& hash, const Rotation3& q) {
-    add(hash, Vec3{q.x, q.y, q.z});
-    hash.add(q.w);
-}
-
-template <int D>
-void add(Hash& hash, const ContactRecord<D>& c) {
-    hash.add(std::uint64_t{c.shape_a} << 32 | c.shape_b);
-    hash.add(static_cast<std::uint64_t>(c.count));
-    for (int i = 0; i < c.count; ++i) {
-        hash.add(c.points[i].impulse);
-        hash.add(std::uint64_t{c.points[i].feature});
-    }
-    add(hash, c.friction_impulse);
-    add(hash, c.spin_impulse);
-    hash.add(c.twist_impulse);
-}
-
-}  // namespace
-
-template <int D>
-std::uint64_t World<D>::hash() const {
-    Hash hash;
-    hash.add(state_->time);
-    add(hash, state_->definition.gravity);
-    for (const BodyId<D>& id : state_->body_ids) {
-        const std::uint32_t i = id.index;
-        const BodyState<D>& s = state_->states[i];
-        const BodyInfo<D>& info = state_->infos[i];
-        hash.add(std::uint64_t{i} << 32 | static_cast<std::uint64_t>(state_->types[i]) << 8 |
-                 info.awake << 1 | info.disabled);
-        add(hash, s.position);
-        add(hash, s.rotation);
-        add(hash, s.velocity);
-        add(hash, s.angular_velocity);
-        hash.add(static_cast<std::uint64_t>(static_cast<std::uint32_t>(s.turns)));
-        hash.add(state_->masses[i].mass);
-        hash.add(info.rest_time);
-        add(hash, state_->applied[i].force);
-        add(hash, state_->applied[i].torque);
-    }
-    for (const ContactRecord<D>& c : state_->contacts) add(hash, c);
-    return hash.value();
 }
 
 // The members defined in this file; those that change the world are instantiated in commands.cpp.

@@ -9,6 +9,7 @@ template <int D>
 void WorldState<D>::wake(std::uint32_t body) {
     infos[body].rest_time = 0;
     if (infos[body].awake || types[body] != BodyType::dynamic) return;
+    infos[body].awake = true;
     to_wake.push_back(body);
 }
 

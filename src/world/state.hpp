@@ -64,6 +64,7 @@ struct WorldState {
 
     // Working space of a step.
     std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
+    std::vector<std::uint8_t> moving;   ///< by body index: is it in `awake`?
     std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
     std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
     std::vector<std::uint64_t> new_pairs;

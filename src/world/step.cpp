@@ -43,6 +43,8 @@ void WorldState<D>::begin_step(double) {
     });
     wake_islands();
 
+    for (const std::uint32_t i : awake) moving[i] = 0;
+    moving.resize(states.size(), 0);
     awake.clear();
     for (const std::uint32_t i : movable) {
         if (is_moving(i)) awake.push_back(i);
@@ -73,7 +75,8 @@ void WorldState<D>::solve_contacts(double dt) {
         active.push_back(i);
         touched[c.body_a] = touched[c.body_b] = 1;
     }
-    solver.run({states, masses, types, loads, contacts, active, dt, definition.substeps,
+    for (const std::uint32_t i : awake) moving[i] = 1;
+    solver.run({states, masses, types, moving, loads, contacts, active, dt, definition.substeps,
                 definition.restitution_threshold});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -106,9 +107,11 @@ inline ShapeDefinition2 random_shape(Kind kind, Random& random, double size) {
             break;
         }
         case Kind::hull: {
-            Hull2 hull{{}, rounding};
-            const int count = 3 + random.below(8);
-            for (int i = 0; i < count; ++i) hull.points.push_back(random.in_cube<2>(size));
+            // A triangle that may be a sliver, and some points more.
+            const Vec2 tip{size * random.between(-1, 1), size * std::pow(100, -random.unit())};
+            Hull2 hull{{{-0.5 * size, 0}, {0.5 * size, 0}, tip}, rounding};
+            for (int more = random.below(3) * random.below(4); more > 0; --more)
+                hull.points.push_back(random.in_cube<2>(size));
             shape.geometry = hull;
             break;
         }

@@ -33,7 +33,8 @@ Shape<D> random_shape(Random& random, double size, double flatness) {
             Hull<D> hull;
             const int count = D + 2 + random.below(20);
             Vec<D> scale;
-            for (int i = 0; i < D; ++i) scale[i] = extent();
+            for (int i = 0; i < D; ++i)
+                scale[i] = std::max(extent(), 0.01 * size);  // flatter ones are refused
             for (int i = 0; i < count; ++i) {
                 hull.points.push_back(random.in_cube<D>(1));
                 for (int k = 0; k < D; ++k) hull.points.back()[k] *= scale[k];
@@ -71,7 +72,9 @@ template <int D>
 void expect_proven(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double size,
                    Random& random) {
     const CoreDistance<D> found = core_distance(a, b, b_in_a);
-    const double exact = 1e-12 * size;
+    // Polytopes are solved in finitely many steps; for round shapes the search ends in ever smaller ones.
+    const bool round = a.kind >= ShapeKind::cylinder || b.kind >= ShapeKind::cylinder;
+    const double exact = (round ? 1e-10 : 1e-13) * size;
     ASSERT_GE(found.count, 1);
     ASSERT_LE(found.count, D + 1);
     expect_inside(a, {}, found.on_a, exact, random);
@@ -100,19 +103,19 @@ TYPED_TEST(GjkTest, proves_its_answers) {
     constexpr int D = TypeParam::value;
     Random random(1);
     int overlaps = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 15000; ++i) {
         const double size = i % 2 ? 1 : std::pow(10, random.between(-4, 3));
         const double ratio = i % 3 ? 1 : random.between(1, 1000);
         const double flatness = i % 5 ? 3 : 1e4;
         const Shape<D> a = random_shape<D>(random, size, flatness),
                        b = random_shape<D>(random, size * ratio, flatness);
-        const Transform<D> b_in_a = random.placement<D>(2 * size * ratio);
+        const Transform<D> b_in_a = random.placement<D>(size * (i % 2 ? 1 : ratio));
         SCOPED_TRACE(testing::Message() << "case " << i << ", kinds " << int(a.kind) << ", " << int(b.kind));
         expect_proven(a, b, b_in_a, size * ratio, random);
         overlaps += core_distance(a, b, b_in_a).overlap;
         if (this->HasFatalFailure()) return;
     }
-    EXPECT_GT(overlaps, 1000);
+    EXPECT_GT(overlaps, 700);
 }
 
 TYPED_TEST(GjkTest, touching_and_nearly_touching) {

@@ -47,6 +47,7 @@ void Body3::set(const Capsule3& capsule) {
 }
 
 void Body3::set(const Hull3& hull) {
+    hull_ = true;
     vertices_ = hull.points;
     radius_ = hull.rounding;
     find_faces();
@@ -238,7 +239,7 @@ Geometry<3> random_geometry(Kind kind, double size, Random& random) {
         case Kind::hull: {
             Hull3 hull;
             const Vec3 lengths{part(), part(), part()};
-            const int count = 4 + random.below(8);
+            const int count = 5 + random.below(8);
             for (int i = 0; i < count; ++i) {
                 const Vec3 p = random.direction<3>();
                 hull.points.push_back({0.5 * lengths.x * p.x, 0.5 * lengths.y * p.y, 0.5 * lengths.z * p.z});

@@ -24,6 +24,8 @@ class Body3 {
     double size() const { return size_; }
     double thickness() const { return thickness_; }
     double radius() const { return radius_; }
+    /// How far the engine's shape may be off: hulls leave out points that stand out by less than 1e-5 of the size.
+    double vagueness() const { return hull_ ? 3e-5 * size_ : 0; }
     bool is_plane() const { return plane_; }
     /// A core that is a point, a segment or a polyhedron has all its corners here; others have none.
     const std::vector<Vec3>& corners() const { return corners_; }
@@ -54,7 +56,7 @@ class Body3 {
     double bottom_ = 0, top_ = 0, half_height_ = 0;  ///< radii of a body of revolution
     double radius_ = 0, size_ = 0, thickness_ = 0;
     Plane3 half_space_;
-    bool plane_ = false;
+    bool plane_ = false, hull_ = false;
 };
 
 /// The gap between two shapes along a unit vector from a to b.

@@ -24,7 +24,7 @@ await mkdir(values.out, { recursive: true });
 const browser = await launch();
 try {
     for (const file of positionals) {
-        const url = `${pathToFileURL(resolve(file))}#${values.options}`;
+        const url = `${pathToFileURL(resolve(file))}#quality=high&${values.options}`;
         const page = await openReplay(browser, url, { width, height, ratio: Number(values.ratio) });
         for (const time of times) {
             await page.evaluate((seconds) => window.caromReplay.seek(seconds), time);

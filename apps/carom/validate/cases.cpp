@@ -5,6 +5,14 @@ namespace carom::app {
 std::span<const Case> validation_cases() {
     static constexpr Case cases[] = {
         {"A1", "a projectile, by each integrator", projectile},
+        {"A2", "a hundred rounds of a Kepler orbit, by each integrator", kepler_orbit},
+        {"A3", "a harmonic oscillator, by each integrator", oscillator},
+        {"A4", "a symmetric top that no torque disturbs", symmetric_top},
+        {"A5", "the tennis racket: an asymmetric body turns over", tennis_racket},
+        {"B1", "a cube slides down an incline, or sticks", incline},
+        {"B2", "a cube slides to rest, in every direction", slide_to_rest},
+        {"B3", "slip goes over into rolling", slip_to_roll},
+        {"B4", "rolling down an incline", roll_down},
     };
     return cases;
 }

@@ -6,5 +6,13 @@ namespace carom::app {
 
 // One function a case; each lives in the file of its subject.
 std::vector<Result> projectile();
+std::vector<Result> kepler_orbit();
+std::vector<Result> oscillator();
+std::vector<Result> symmetric_top();
+std::vector<Result> tennis_racket();
+std::vector<Result> incline();
+std::vector<Result> slide_to_rest();
+std::vector<Result> slip_to_roll();
+std::vector<Result> roll_down();
 
 }  // namespace carom::app

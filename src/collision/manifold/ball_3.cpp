@@ -46,7 +46,7 @@ Nearest3 point_segment(const Pair3& pair, const Search3&) {
     return between(pair.a.a, closest_on_segment(from, to, pair.a.a), across);
 }
 
-Nearest3 point_box(const Pair3& pair, const Search3& search) {
+Nearest3 point_box(const Pair3& pair, const Search3&) {
     const Shape<3>& box = pair.b;
     const Vec3 center = apply(pair.b_in_a, box.a);
     const Rotation3 turn = pair.b_in_a.rotation * box.rotation;
@@ -60,7 +60,7 @@ Nearest3 point_box(const Pair3& pair, const Search3& search) {
     double gap = std::fabs(p.x) - half.x;
     for (int i = 1; i < 3; ++i) {
         const double candidate = std::fabs(p[i]) - half[i];
-        if (candidate > gap + advantage(pair, search, gap, core_extent(box))) {
+        if (candidate > gap) {
             gap = candidate;
             axis = i;
         }
@@ -77,7 +77,7 @@ Nearest3 point_polyhedron(const Pair3& pair, const Search3& search) {
     std::size_t face = 0;
     for (std::size_t f = 0; f < core.normals.size(); ++f) {
         const double candidate = dot(core.normals[f], p) - core.offsets[f];
-        if (candidate > gap + (f == 0 ? 0.0 : advantage(pair, search, gap, std::fabs(core.offsets[f])))) {
+        if (candidate > gap) {
             gap = candidate;
             face = f;
         }
@@ -98,7 +98,7 @@ Nearest3 point_polyhedron(const Pair3& pair, const Search3& search) {
     return between(pair.a.a, apply(pair.b_in_a, closest), -outward);
 }
 
-Nearest3 point_revolved(const Pair3& pair, const Search3& search) {
+Nearest3 point_revolved(const Pair3& pair, const Search3&) {
     const Shape<3>& shape = pair.b;
     const Vec3 center = apply(pair.b_in_a, shape.a);
     const Vec3 axis = rotate(pair.b_in_a.rotation, shape.b);
@@ -121,7 +121,7 @@ Nearest3 point_revolved(const Pair3& pair, const Search3& search) {
         if (whole == 0) continue;
         const Vec2 normal = Vec2{along.y, -along.x} / std::sqrt(whole);
         const double candidate = dot(normal, p - profile[i]);
-        if (gap == -1e300 || candidate > gap + advantage(pair, search, gap, shape.radius)) {
+        if (candidate > gap) {
             gap = candidate;
             outward = normal;
         }

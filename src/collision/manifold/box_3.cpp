@@ -85,14 +85,14 @@ Nearest3 at_face_of_a(const Boxes& boxes, const Candidate& face) {
     Vec3 normal{};
     normal[face.i] = boxes.placed.position[face.i] < 0 ? -1 : 1;
     const Vec3 on_b = apply(boxes.placed, corner(boxes.b, unrotate(boxes.placed.rotation, -normal)));
-    return {normal, face.gap, on_b - face.gap * normal, on_b, face.gap <= 0};
+    return {normal, face.gap, on_b - face.gap * normal, on_b, false};
 }
 
 Nearest3 at_face_of_b(const Boxes& boxes, const Candidate& face) {
     const Vec3& axis = boxes.axis(face.j);
     const Vec3 normal = dot(boxes.placed.position, axis) < 0 ? -axis : axis;
     const Vec3 on_a = corner(boxes.a, normal);
-    return {normal, face.gap, on_a, on_a + face.gap * normal, face.gap <= 0};
+    return {normal, face.gap, on_a, on_a + face.gap * normal, false};
 }
 
 Nearest3 at_edges(const Boxes& boxes, const Candidate& edges) {

@@ -52,7 +52,7 @@ Nearest3 widest_over_faces(const Polyhedron& core, const Vec3& from, const Vec3&
         const double gap = std::min(at_from, at_to);
         if (gap <= widest.distance) continue;
         const Vec3& lower = at_from <= at_to ? from : to;
-        widest = {core.normals[f], gap, lower - gap * core.normals[f], lower, gap <= 0};
+        widest = {core.normals[f], gap, lower - gap * core.normals[f], lower, false};
     }
     return widest;
 }

@@ -141,7 +141,7 @@ void plane_facet(const Shape<3>& plane, Facet3& facet) {
 void find_facet(const Shape<3>& shape, const Vec3& direction, Facet3& facet) {
     facet.id = 0;
     switch (shape.kind) {
-        case ShapeKind::ball: return set_edge(facet, shape.a, shape.a);
+        case ShapeKind::ball: return;
         case ShapeKind::capsule: return set_edge(facet, shape.a, shape.b);
         case ShapeKind::box: return box_facet(shape, direction, facet);
         case ShapeKind::hull: return hull_facet(shape, direction, facet);

@@ -29,7 +29,9 @@ struct Nearest3 {
     double distance = 0;  ///< gap between the cores along it; negative where they overlap
     Vec3 on_a{};          ///< points of the cores that face each other there
     Vec3 on_b{};
-    bool certain = true;  ///< false: the true distance of cores that are apart may be larger
+    /// False where only the direction is known: the points may lie beside each other, and cores that are apart
+    /// may be further apart than along any face's normal.
+    bool certain = true;
 };
 
 using NearestRoutine3 = Nearest3 (*)(const Pair3&, const Search3&);
@@ -48,8 +50,8 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search);
 Nearest3 core_revolved(const Pair3& pair, const Search3& search);
 Nearest3 core_plane(const Pair3& pair, const Search3& search);
 
-/// The true distance of two cores that are apart, given the widest gap over faces and edges.
-Nearest3 closest_points(const Pair3& pair, const Nearest3& bound);
+/// Makes an answer certain that was found over the normals of faces and pairs of edges.
+Nearest3 made_certain(const Pair3& pair, const Nearest3& found);
 
 /// The gap between the cores along the unit vector `normal`, with the points that bound it.
 inline Nearest3 gap_along(const Pair3& pair, const Vec3& normal) {

@@ -72,23 +72,27 @@ Closest closest_points(const Outline& front, const Facing& facing, const Outline
 }
 
 /// Fills in what two cores have that are apart.
-void set_apart(Proximity& result, const Closest& closest, const Outline& a, const Outline& b,
+void set_apart(Proximity& result, const Closest& closest, const Outline& a, const Outline& b, double extent,
                const Vec2& fallback_axis) {
     result.on_a = closest.edge_of_a ? closest.on_edge : closest.at_corner;
     result.on_b = closest.edge_of_a ? closest.at_corner : closest.on_edge;
     result.corner_a = closest.edge_of_a ? closest.end : closest.corner;
     result.corner_b = closest.edge_of_a ? closest.corner : closest.end;
-    const Vec2 across = result.on_b - result.on_a;
     result.corners = !closest.inside;
+    const Vec2 across = result.on_b - result.on_a;
+    const double distance = length(across);
+    // Points that touch but for rounding have no direction between them.
+    const Vec2 direction = distance > 1e-13 * extent ? across / distance : fallback_axis;
     if (closest.inside) {
-        // The normal is known better than the difference of two close points.
-        const Vec2 normal = closest.edge_of_a ? a.normal(closest.edge) : b.normal(closest.edge);
-        result.axis = dot(normal, across) < 0 ? -normal : normal;
+        // The normal is known better than the difference of two close points. Only a segment has two sides.
+        const Outline& outline = closest.edge_of_a ? a : b;
+        const Vec2 normal = outline.normal(closest.edge);
+        result.axis = closest.edge_of_a ? normal : -normal;
+        if (outline.count() == 2 && dot(result.axis, direction) < 0) result.axis = -result.axis;
         result.distance = dot(result.axis, across);
     } else {
-        result.distance = length(across);
-        const double extent = length(result.on_a) + length(result.on_b);
-        result.axis = result.distance > 1e-14 * extent ? across / result.distance : fallback_axis;
+        result.axis = direction;
+        result.distance = distance;
     }
 }
 
@@ -177,7 +181,9 @@ Proximity proximity(const Outline& a, const Outline& b) {
     if (facing.separation > 0 || only_segments) {
         const Closest closest = closest_points(front, facing, other, front_is_a);
         if (facing.separation > 0 || closest.square > 4 * facing.separation * facing.separation) {
-            set_apart(result, closest, a, b, axis);
+            const Vec2 from = front.corner(facing.edge), to = front.corner(front.next(facing.edge));
+            const double extent = length(from) + length(to) + length(other.corner(facing.corner));
+            set_apart(result, closest, a, b, extent, axis);
             return result;
         }
     }

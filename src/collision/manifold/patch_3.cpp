@@ -112,7 +112,8 @@ bool lies_over(const Facet3& disk, const Facet3& base) {
     return true;
 }
 
-/// Lets points that coincide within `snap` be one.
+/// Lets points that coincide within `snap` be one, and gives those that are left names of their own (two sides that
+/// lie along each other cross twice, within the snap).
 void merge(Points& points, double snap) {
     std::size_t count = 0;
     for (const ManifoldPoint<3>& point : points) {
@@ -128,21 +129,25 @@ void merge(Points& points, double snap) {
         }
     }
     points.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (points[j].feature == points[i].feature) points[i].feature += 0x80;
+        }
+    }
 }
 
 /// The index of the point of greatest measure; the first of those that are nearly as great.
 template <class Measure>
 int greatest(const Points& points, const Measure& measure) {
-    int best = 0;
-    double value = measure(points[0]);
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const double candidate = measure(points[i]);
-        if (candidate > value + 1e-3 * std::fabs(value)) {
-            value = candidate;
-            best = static_cast<int>(i);
-        }
+    double low = 1e300, high = -1e300;
+    for (const ManifoldPoint<3>& point : points) {
+        low = std::min(low, measure(point));
+        high = std::max(high, measure(point));
     }
-    return best;
+    const auto first = std::find_if(points.begin(), points.end(), [&](const ManifoldPoint<3>& point) {
+        return measure(point) >= high - 1e-3 * (high - low);
+    });
+    return static_cast<int>(first - points.begin());
 }
 
 /// Picks four points that keep the area of all, the deepest among them. The choice begins at a fixed direction,
@@ -287,14 +292,14 @@ bool edge_patch(const Meeting& meeting, double reach, Manifold<3>& manifold) {
     return meeting.confirms(least) && manifold.count > 0;
 }
 
-Manifold<3> single_point(const Meeting& meeting, double reach) {
-    const Nearest3& nearest = meeting.nearest;
+/// The one point where the surfaces are nearest.
+Manifold<3> single_point(const Pair3& pair, const Nearest3& nearest, double reach) {
+    const double radius_a = core_radius(pair.a), radius_b = core_radius(pair.b);
+    const double separation = nearest.distance - radius_a - radius_b;
     Manifold<3> manifold;
     manifold.normal = nearest.normal;
-    const double separation = nearest.distance - meeting.radius_a - meeting.radius_b;
     if (separation > reach) return manifold;
-    const Vec3 middle =
-        0.5 * (nearest.on_a + nearest.on_b + (meeting.radius_a - meeting.radius_b) * nearest.normal);
+    const Vec3 middle = 0.5 * (nearest.on_a + nearest.on_b + (radius_a - radius_b) * nearest.normal);
     manifold.points[0] = {middle, separation, 0};
     manifold.count = 1;
     return manifold;
@@ -308,32 +313,28 @@ double facing(const Facet3& facet, const Vec3& direction) {
 
 }  // namespace
 
-Manifold<3> contact_patch(const Pair3& pair, const Nearest3& nearest, double reach) {
+std::optional<Manifold<3>> contact_patch(const Pair3& pair, const Nearest3& nearest, double reach) {
+    if (pair.a.kind == ShapeKind::ball) return single_point(pair, nearest, reach);
+
     Memory memory;
     Facet3 a(memory.resource), b(memory.resource);
     find_facet(pair.a, nearest.normal, a);
     find_facet(pair.b, unrotate(pair.b_in_a.rotation, -nearest.normal), b);
     move_facet(b, pair.b_in_a);
 
-    const auto attempt = [&](const Nearest3& at, Manifold<3>& manifold) {
-        const Meeting meeting{a, b, core_radius(pair.a), core_radius(pair.b), at};
-        const double a_facing = facing(a, at.normal), b_facing = facing(b, -at.normal);
-        // Parallel faces are told apart by rounding alone: then a's is the base, unless it is a disk within b's.
-        const bool both = std::min(a_facing, b_facing) >= facing_cosine;
-        const bool a_within = both && a.form == Facet3::Form::disk && lies_over(a, b);
-        const bool b_first = a_within || b_facing > a_facing + 1e-10;
-        for (const bool base_is_b : {b_first, !b_first}) {
-            if ((base_is_b ? b_facing : a_facing) < facing_cosine) continue;
-            if (face_patch(meeting, base_is_b, reach, manifold)) return true;
-        }
-        if (!at.certain) return false;
-        if (!edge_patch(meeting, reach, manifold)) manifold = single_point(meeting, reach);
-        return true;
-    };
-
+    const Meeting meeting{a, b, core_radius(pair.a), core_radius(pair.b), nearest};
+    const double a_facing = facing(a, nearest.normal), b_facing = facing(b, -nearest.normal);
+    // Parallel faces are told apart by rounding alone: then a's is the base, unless it is a disk within b's.
+    const bool both = std::min(a_facing, b_facing) >= facing_cosine;
+    const bool a_within = both && a.form == Facet3::Form::disk && lies_over(a, b);
+    const bool b_first = a_within || b_facing > a_facing + 1e-10;
     Manifold<3> manifold;
-    if (attempt(nearest, manifold)) return manifold;
-    return contact_patch(pair, closest_points(pair, nearest), reach);
+    for (const bool base_is_b : {b_first, !b_first}) {
+        if ((base_is_b ? b_facing : a_facing) < facing_cosine) continue;
+        if (face_patch(meeting, base_is_b, reach, manifold)) return manifold;
+    }
+    if (!nearest.certain) return std::nullopt;
+    return edge_patch(meeting, reach, manifold) ? manifold : single_point(pair, nearest, reach);
 }
 
 }  // namespace carom::detail

@@ -25,7 +25,7 @@ Nearest3 widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Trans
         }
         if (gap <= widest.distance) continue;
         const Vec3 on_b = apply(b_in_a, b.vertices[lowest]);
-        widest = {a.normals[f], gap, on_b - gap * a.normals[f], on_b, gap <= 0};
+        widest = {a.normals[f], gap, on_b - gap * a.normals[f], on_b, false};
         if (gap > limit) break;
     }
     return widest;
@@ -94,18 +94,23 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     return preferred(of_edges, nearest) ? seen_from_a(of_edges, pair.b_in_a) : nearest;
 }
 
-Nearest3 closest_points(const Pair3& pair, const Nearest3& bound) {
-    const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, pair.b_in_a);
+Nearest3 made_certain(const Pair3& pair, const Nearest3& found) {
+    if (found.certain) return found;
+    // Cores that overlap are first moved apart along the normal: then their closest points face each other along it.
     const double extent = core_extent(pair.a) + core_extent(pair.b);
-    Nearest3 nearest = bound;
-    nearest.certain = true;
-    if (found.overlap) return nearest;
-    nearest.on_a = found.on_a;
-    nearest.on_b = found.on_b;
-    if (found.distance <= bound.distance + 1e-9 * extent) return nearest;
-    nearest.normal = found.axis;
-    nearest.distance = found.distance;
-    return nearest;
+    const Vec3 shift = found.distance > 0 ? Vec3{} : (1e-3 * extent - found.distance) * found.normal;
+    const Transform3 moved{pair.b_in_a.position + shift, pair.b_in_a.rotation};
+    const CoreDistance<3> closest = core_distance<3>(pair.a, pair.b, moved);
+    Nearest3 result = found;
+    result.certain = true;
+    if (closest.overlap) return result;
+    result.on_a = closest.on_a;
+    result.on_b = closest.on_b - shift;
+    if (found.distance > 0 && closest.distance > found.distance + 1e-9 * extent) {
+        result.normal = closest.axis;
+        result.distance = closest.distance;
+    }
+    return result;
 }
 
 double core_extent(const Shape<3>& shape) {

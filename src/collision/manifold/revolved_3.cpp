@@ -58,26 +58,22 @@ Gap3 likely_gap(const Pair3& pair) {
     return candidates.widest();
 }
 
-/// Sharpens the direction of the widest gap of cores that overlap a little. With b moved out along the direction
-/// until the cores are apart, their closest points give a better one: the error shrinks each time by about depth
-/// over radius of curvature. Where flat faces meet, the first step is exact.
-Nearest3 sharpened(const Pair3& pair, const Gap3& start, double extent) {
-    Nearest3 best = gap_along(pair, start.normal);
-    const double clearance = std::max(std::fabs(best.distance), 1e-4 * extent);
+/// Sharpens the direction of the widest gap of cores that overlap or all but touch. With b moved out along the
+/// direction until the cores are `clearance` apart, their closest points give a better one: the error shrinks each
+/// time by about clearance over radius of curvature. Where flat faces meet, the first step is exact.
+Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance) {
+    Nearest3 best = gap_along(pair, start);
     for (int i = 0; i < 16; ++i) {
         const Vec3 shift = (clearance - best.distance) * best.normal;
         const Transform3 moved{pair.b_in_a.position + shift, pair.b_in_a.rotation};
         const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, moved);
         if (found.overlap) break;
-        if (i == 0) {
-            best.on_a = found.on_a;
-            best.on_b = found.on_b - shift;
-        }
+        best.on_a = found.on_a;
+        best.on_b = found.on_b - shift;
         const double gap = gap_along(pair, found.axis).distance;
         if (gap <= best.distance) break;
-        const bool settled = gap <= best.distance + 1e-14 * extent;
-        best = {found.axis, gap, found.on_a, found.on_b - shift};
-        if (settled) break;
+        best.normal = found.axis;
+        best.distance = gap;
     }
     return best;
 }
@@ -90,18 +86,17 @@ Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
     if (likely.distance > search.limit) return gap_along(pair, likely.normal);
 
     const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, pair.b_in_a);
-    const bool apart = !found.overlap && found.distance > 1e-4 * extent;
-    if (apart && found.distance > likely.distance + 1e-9 * extent)
-        return {found.axis, found.distance, found.on_a, found.on_b};
-    if (apart) return {likely.normal, likely.distance, found.on_a, found.on_b};
-
-    Gap3 widest = likely;
-    if (found.overlap) {
-        widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely, 1e-7 * extent);
-    } else if (found.distance > likely.distance + 1e-9 * extent) {
-        widest = {found.axis, found.distance};
+    if (!found.overlap && found.distance <= likely.distance + 1e-9 * extent)
+        return {likely.normal, likely.distance, found.on_a, found.on_b};
+    Gap3 guess = likely;
+    if (!found.overlap) {
+        const double gap = gap_along(pair, found.axis).distance;
+        if (gap > found.distance - 1e-9 * extent) return {found.axis, found.distance, found.on_a, found.on_b};
+        // Rounding blurs the direction between closest points that all but touch.
+        if (gap > guess.distance) guess = {found.axis, gap};
     }
-    return sharpened(pair, widest, extent);
+    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, guess, 1e-7 * extent);
+    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent));
 }
 
 }  // namespace carom::detail

@@ -28,16 +28,16 @@ export interface Slot {
 const fewest = 4; // instances that make a draw call of their own worth while
 
 /** Divides round shapes the finer the fewer there are. */
-function detailFor(count: number): number {
-    return count <= 60 ? 14 : count <= 300 ? 10 : 7;
+function detailFor(count: number, fine: boolean): number {
+    return Math.round((count <= 60 ? 14 : count <= 300 ? 10 : 7) * (fine ? 1 : 0.7));
 }
 
 export class Batches {
     readonly objects: Mesh[] = [];
     private readonly partsOf = new Map<Object3D, Part[]>();
 
-    constructor(parts: Part[], materialFor: (surface: string) => Material) {
-        const detail = detailFor(parts.length);
+    constructor(parts: Part[], materialFor: (surface: string) => Material, fine: boolean) {
+        const detail = detailFor(parts.length, fine);
         for (const [surface, members] of groupBy(parts, (part) => part.surface)) {
             const odd: [BufferGeometry, Part[]][] = [];
             for (const alike of groupBy(members, (part) => part.solid.key).values()) {

@@ -22,6 +22,9 @@ export class EnergyPlot {
     private readonly curves = document.createElement("canvas");
     private stale = true;
     private theme!: Theme;
+    private time = 0;
+    private width = 0;
+    private height = 0;
 
     constructor(private readonly recording: Recording) {
         const { kinetic, potential } = recording.header.energy;
@@ -39,13 +42,13 @@ export class EnergyPlot {
         });
         this.readings = rows.map(({ value }) => value).reverse();
         this.element.append(this.canvas, element("div", { className: "readings" }, ...rows.map(({ row }) => row)));
-        new ResizeObserver(() => {
+        new ResizeObserver(([{ contentRect }]) => {
+            this.width = contentRect.width;
+            this.height = contentRect.height;
             this.stale = true;
             this.draw(this.time);
         }).observe(this.canvas);
     }
-
-    private time = 0;
 
     setTheme(theme: Theme) {
         this.theme = theme;
@@ -54,11 +57,10 @@ export class EnergyPlot {
 
     draw(time: number) {
         this.time = time;
-        const box = this.canvas.getBoundingClientRect();
-        if (box.width === 0 || !this.theme) return;
+        if (this.width === 0) return;
         const ratio = devicePixelRatio;
-        const [width, height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)];
-        if (this.stale || this.canvas.width !== width || this.canvas.height !== height) {
+        const [width, height] = [Math.round(this.width * ratio), Math.round(this.height * ratio)];
+        if (this.stale || this.canvas.width !== width) {
             for (const canvas of [this.canvas, this.curves]) Object.assign(canvas, { width, height });
             this.drawCurves(width, height, ratio);
             this.stale = false;

@@ -9,13 +9,13 @@ export class Lights extends Group {
     private readonly sun = new DirectionalLight();
     private readonly direction: Vector3; // towards the sun
 
-    constructor(up: Vector3) {
+    constructor(up: Vector3, private readonly resolution: number) {
         super();
         // Slantwise, so that both sides of a box that one sees are lit differently.
         this.direction = new Vector3(0.42, 0.25, 0.5).projectOnPlane(up).normalize().multiplyScalar(0.62).add(up).normalize();
         this.sky.position.copy(up);
         this.sun.castShadow = true;
-        this.sun.shadow.mapSize.set(2048, 2048);
+        this.sun.shadow.mapSize.set(resolution, resolution);
         this.sun.shadow.radius = 3;
         this.add(this.sky, this.sun, this.sun.target);
     }
@@ -24,9 +24,9 @@ export class Lights extends Group {
         const dark = theme.name === "dark";
         this.sky.color.set(dark ? "#b9c8e6" : "#ffffff");
         this.sky.groundColor.set(dark ? "#2b2a33" : "#b3a899");
-        this.sky.intensity = dark ? 0.75 : 1.15;
+        this.sky.intensity = dark ? 0.8 : 0.95;
         this.sun.color.set(dark ? "#fff1dc" : "#fff7ea");
-        this.sun.intensity = dark ? 2.3 : 2.5;
+        this.sun.intensity = dark ? 2.1 : 2.0;
     }
 
     /** Spans the shadow over a sphere. It grows and moves in steps, else the shadows' edges would crawl. */
@@ -44,7 +44,7 @@ export class Lights extends Group {
         camera.near = 0.5 * reach;
         camera.far = 8 * reach;
         camera.updateProjectionMatrix();
-        const texel = (2 * reach) / 2048;
+        const texel = (2 * reach) / this.resolution;
         this.sun.shadow.normalBias = 1.5 * texel;
         this.sun.shadow.bias = -0.0004;
     }

@@ -54,7 +54,7 @@ class Page {
         document.title = header.name ? `${header.name} · Carom replay` : "Carom replay";
         this.player = new Player(header.step, header.frames);
         this.player.speed = this.options.speed;
-        this.scene = recording.dimension === 2 ? new Scene2(recording) : new Scene3(recording);
+        this.scene = recording.dimension === 2 ? new Scene2(recording) : new Scene3(recording, this.options.quality);
         this.scene.onChange = () => (this.stale = true);
         byId("stage").append(this.scene.element);
         fillHeading(byId("heading"), recording);

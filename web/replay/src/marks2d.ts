@@ -31,7 +31,7 @@ export function drawArrow(
     context.fill();
 }
 
-/** A spring is a zigzag of twelve strokes that stretches, anything else a straight line. */
+/** A spring is a zigzag of sixteen strokes that stretches, anything else a straight line. */
 export function drawLink(context: CanvasRenderingContext2D, type: string, from: Point, to: Point, color: string) {
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     const length = Math.hypot(dx, dy);
@@ -41,8 +41,8 @@ export function drawLink(context: CanvasRenderingContext2D, type: string, from: 
     context.moveTo(...from);
     if (type === "spring" && length > 0) {
         const amplitude = Math.min(7, length / 8) / length;
-        for (let i = 0; i < 12; ++i) {
-            const along = 0.1 + (0.8 * (i + 0.5)) / 12;
+        for (let i = 0; i < 16; ++i) {
+            const along = 0.1 + (0.8 * (i + 0.5)) / 16;
             const aside = (i % 2 ? 1 : -1) * amplitude;
             context.lineTo(from[0] + dx * along - dy * aside, from[1] + dy * along + dx * aside);
         }

@@ -1,13 +1,15 @@
 // What is drawn over the world on demand: contacts, links, and the marks of the body that is selected.
 
 import {
-    BackSide, BufferGeometry, CatmullRomCurve3, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute,
-    Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, ShaderMaterial, SphereGeometry,
-    TubeGeometry, Vector2, Vector3,
+    BackSide, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, InstancedMesh,
+    InterleavedBufferAttribute, Matrix4, Mesh, MeshBasicMaterial, Quaternion, ShaderMaterial, SphereGeometry,
+    Vector2, Vector3,
 } from "three";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { Part } from "./batches";
 import { Contacts, contactsOf } from "./decode";
@@ -15,11 +17,12 @@ import { Recording } from "./recording";
 import { Theme } from "./theme";
 
 const up = new Vector3(0, 1, 0);
+const point = new Vector3();
 
 /** An arrow of unit length along y. */
 function arrowGeometry(): BufferGeometry {
-    const shaft = new CylinderGeometry(0.028, 0.028, 0.75, 8).translate(0, 0.375, 0);
-    const head = new ConeGeometry(0.09, 0.28, 12).translate(0, 0.86, 0);
+    const shaft = new CylinderGeometry(0.022, 0.022, 0.75, 8).translate(0, 0.375, 0);
+    const head = new ConeGeometry(0.075, 0.26, 12).translate(0, 0.86, 0);
     return mergeGeometries([shaft, head]);
 }
 
@@ -73,59 +76,74 @@ export class ContactMarks extends Group {
     }
 }
 
-/** A coil of unit length along y, its radius a unit too. */
-function coilGeometry(): BufferGeometry {
-    const turns = 9;
-    const points = Array.from({ length: turns * 10 + 1 }, (_, i) => {
-        const share = i / (turns * 10);
-        const radius = Math.min(1, 12 * Math.min(share, 1 - share));
-        const angle = 2 * Math.PI * turns * share;
-        return new Vector3(Math.cos(angle) * radius, 0.04 + 0.92 * share, Math.sin(angle) * radius);
-    });
-    return new TubeGeometry(new CatmullRomCurve3([new Vector3(), ...points, up]), turns * 16, 0.16, 5);
-}
+const coilTurns = 10;
+const coilSegments = 12 * coilTurns;
 
-/** Springs as coils, other links as rods. */
+/** Springs as coils, other links as straight lines; all in one draw call. */
 export class LinkMarks extends Group {
-    private readonly material = new MeshStandardMaterial({ roughness: 0.5, metalness: 0.3 });
-    private readonly meshes: Mesh[];
+    private readonly material = new LineMaterial({ linewidth: 2.5 });
+    private readonly geometry = new LineSegmentsGeometry();
+    private readonly places: Float32Array;
 
     constructor(private readonly recording: Recording, private readonly radius: number) {
         super();
-        const coil = coilGeometry();
-        const rod = new CylinderGeometry(0.4, 0.4, 1, 10).translate(0, 0.5, 0);
-        this.meshes = recording.header.links.map((link) => new Mesh(link.type === "spring" ? coil : rod, this.material));
-        for (const mesh of this.meshes) {
-            mesh.castShadow = true;
-            mesh.frustumCulled = false;
-            this.add(mesh);
-        }
+        const { links } = recording.header;
+        this.places = new Float32Array(links.length * coilSegments * 6);
+        if (links.length === 0) return;
+        this.geometry.setPositions(this.places);
+        const lines = new LineSegments2(this.geometry, this.material);
+        lines.frustumCulled = false;
+        this.add(lines);
     }
 
     setTheme(theme: Theme) {
         this.material.color.setRGB(...theme.line, "srgb");
     }
 
+    resize(width: number, height: number) {
+        this.material.resolution.set(width, height);
+    }
+
     update(origin: Vector3) {
-        const { recording } = this;
+        const { recording, places } = this;
+        const { links } = recording.header;
+        if (links.length === 0) return;
         const { present } = recording.poses;
-        recording.header.links.forEach((link, i) => {
-            const mesh = this.meshes[i];
-            mesh.visible = (link.a < 0 || !!present[link.a]) && (link.b < 0 || !!present[link.b]);
+        links.forEach((link, i) => {
             const from = this.anchor(link.a, link.anchor_a).sub(origin);
-            const along = this.anchor(link.b, link.anchor_b).sub(origin).sub(from);
-            const length = Math.max(along.length(), 1e-6);
-            mesh.position.copy(from);
-            mesh.quaternion.setFromUnitVectors(up, along.divideScalar(length));
-            mesh.scale.set(this.radius, length, this.radius);
+            const shown = (link.a < 0 || present[link.a]) && (link.b < 0 || present[link.b]);
+            const to = shown ? this.anchor(link.b, link.anchor_b).sub(origin) : from;
+            this.coil(from, to, link.type === "spring" && shown ? this.radius : 0, i * coilSegments * 6);
         });
+        // Both ends of all segments are views of one buffer.
+        const buffer = (this.geometry.getAttribute("instanceStart") as InterleavedBufferAttribute).data;
+        buffer.array.set(places);
+        buffer.needsUpdate = true;
+    }
+
+    private coil(from: Vector3, to: Vector3, radius: number, start: number) {
+        const along = to.clone().sub(from);
+        const axis = along.clone().normalize();
+        const aside = new Vector3(axis.y, axis.z, axis.x).cross(axis).normalize().multiplyScalar(radius);
+        const across = axis.clone().cross(aside);
+        for (let i = 0; i <= coilSegments; ++i) {
+            const share = i / coilSegments;
+            const width = Math.min(1, 14 * Math.min(share, 1 - share));
+            const angle = 2 * Math.PI * coilTurns * share;
+            point.copy(from)
+                .addScaledVector(along, share)
+                .addScaledVector(aside, width * Math.cos(angle))
+                .addScaledVector(across, width * Math.sin(angle));
+            if (i < coilSegments) point.toArray(this.places, start + 6 * i);
+            if (i > 0) point.toArray(this.places, start + 6 * i - 3);
+        }
     }
 
     private anchor(body: number, local: number[]): Vector3 {
-        const point = new Vector3(...local);
-        if (body < 0) return point;
+        const place = new Vector3(...local);
+        if (body < 0) return place;
         const { centers, turns } = this.recording.poses;
-        return point
+        return place
             .sub(new Vector3(...this.recording.bodies[body].center_of_mass))
             .applyQuaternion(new Quaternion().fromArray(turns, 4 * body))
             .add(new Vector3().fromArray(centers, 3 * body));
@@ -168,6 +186,8 @@ export class SelectionMarks extends Group {
                 #include <colorspace_fragment>
             }`,
     });
+    /** So that it is seen behind others, too. */
+    private readonly ghostMaterial = new MeshBasicMaterial({ depthTest: false, depthWrite: false, transparent: true, opacity: 0.22 });
     private readonly lineMaterial = new LineMaterial({ linewidth: 2, transparent: true, opacity: 0.75, worldUnits: false });
     private readonly arrowMaterial = new MeshBasicMaterial({ depthTest: false, transparent: true });
     private readonly arrow = new Mesh(arrowGeometry(), this.arrowMaterial);
@@ -180,7 +200,7 @@ export class SelectionMarks extends Group {
     }
 
     setTheme(theme: Theme) {
-        for (const material of [this.lineMaterial, this.arrowMaterial]) material.color.setRGB(...theme.accent, "srgb");
+        for (const material of [this.lineMaterial, this.arrowMaterial, this.ghostMaterial]) material.color.setRGB(...theme.accent, "srgb");
         this.outlineMaterial.uniforms.color.value.setRGB(...theme.accent, "srgb");
     }
 
@@ -196,8 +216,12 @@ export class SelectionMarks extends Group {
         this.clear();
         this.outlines = parts
             .filter((part) => part.body === body)
-            .map((part) => ({ mesh: new Mesh(outlineGeometry(part.slot.geometry), this.outlineMaterial), part }));
+            .flatMap((part) => {
+                const geometry = outlineGeometry(part.slot.geometry);
+                return [this.outlineMaterial, this.ghostMaterial].map((material) => ({ mesh: new Mesh(geometry, material), part }));
+            });
         for (const { mesh } of this.outlines) {
+            mesh.renderOrder = 8;
             mesh.matrixAutoUpdate = false;
             mesh.frustumCulled = false;
             this.add(mesh);

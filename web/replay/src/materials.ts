@@ -20,7 +20,7 @@ const known: [RegExp, string, Finish][] = [
     [/iron|lead/, "#6f7783", "metal"],
     [/metal|steel|alumini|silver|chrome/, "#9fb0c3", "metal"],
     [/ice|snow|frost/, "#a9d8ee", "gloss"],
-    [/glass|crystal/, "#7cc8c4", "gloss"],
+    [/glass|crystal/, "#86bfbb", "gloss"],
     [/rubber|tyre|tire/, "#d8604f", "matte"],
     [/sand|dust/, "#d9b872", "matte"],
     [/soil|earth|mud|dirt|clay/, "#93704f", "matte"],

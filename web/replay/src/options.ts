@@ -11,6 +11,8 @@ export interface Options {
     panel: boolean | null;
     /** False for a picture without any controls. */
     controls: boolean;
+    /** Of the picture in 3D; null: high where a graphics processor draws it. */
+    quality: "high" | "low" | null;
     /** 3D: azimuth and elevation in degrees, and how near; 2D: how near alone. */
     view: number[];
 }
@@ -24,6 +26,7 @@ export function readOptions(hash: string): Options {
     const on = (name: string, otherwise: boolean) =>
         given.has(name) ? !["0", "off", "false"].includes(given.get(name)!) : otherwise;
     const theme = given.get("theme");
+    const quality = given.get("quality");
     return {
         time: number("t", 0),
         play: on("play", false),
@@ -34,6 +37,7 @@ export function readOptions(hash: string): Options {
         follow: on("follow", false),
         panel: given.has("panel") ? on("panel", true) : null,
         controls: on("controls", true),
+        quality: quality === "high" || quality === "low" ? quality : null,
         view: (given.get("view") ?? "")
             .split(",")
             .map(Number)

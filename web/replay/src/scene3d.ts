@@ -18,12 +18,15 @@ import { surfaceMaterial, surfaceUniforms } from "./surface";
 import { Theme } from "./theme";
 
 const one = new Vector3(1, 1, 1);
+const mostPixels = 5e6; // beyond that, sharpness is not worth the frames it costs
 const nowhere = new Matrix4().makeScale(0, 0, 0);
 
 export class Scene3 implements Scene {
     readonly element = document.createElement("div");
     onChange = () => {};
-    private readonly renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    private readonly renderer: WebGLRenderer;
+    private width = 1;
+    private height = 1;
     private readonly space = new Space();
     private readonly camera = new PerspectiveCamera(38, 1, 0.1, 1000);
     private readonly controls: OrbitControls;
@@ -54,12 +57,13 @@ export class Scene3 implements Scene {
     private lastCenter: Vector3 | null = null;
     private time = 0;
 
-    constructor(private readonly recording: Recording) {
+    constructor(private readonly recording: Recording, quality: "high" | "low" | null) {
+        const high = quality === null ? hasGraphicsProcessor() : quality === "high";
+        this.renderer = new WebGLRenderer({ antialias: high, powerPreference: "high-performance" });
         this.bounds = contentBounds(recording);
-        const low = new Vector3(...this.bounds.low);
-        const high = new Vector3(...this.bounds.high);
-        this.size = high.distanceTo(low);
-        this.origin = low.clone().add(high).divideScalar(2).round();
+        const [from, to] = [new Vector3(...this.bounds.low), new Vector3(...this.bounds.high)];
+        this.size = to.distanceTo(from);
+        this.origin = from.clone().add(to).divideScalar(2).round();
         this.up = upwards(recording.header.gravity);
         this.reaches = recording.bodies.map(reachOf);
         this.moving = recording.bodies.map((_, i) => i).filter((i) => recording.bodies[i].type !== "fixed");
@@ -80,9 +84,9 @@ export class Scene3 implements Scene {
 
         const reflections = environment(this.renderer);
         this.addParts();
-        this.batches = new Batches(this.parts, (surface) => this.surface(surface, reflections));
-        this.lights = new Lights(this.up);
-        this.links = new LinkMarks(recording, this.size * 0.006);
+        this.batches = new Batches(this.parts, (surface) => this.surface(surface, reflections), high);
+        this.lights = new Lights(this.up, high ? 2048 : 1024);
+        this.links = new LinkMarks(recording, this.size * 0.012);
         this.selection = new SelectionMarks(recording);
         this.addPlanes((surface) => this.surface(surface, reflections));
         this.space.add(this.lights, this.links, this.selection, ...this.batches.objects);
@@ -140,9 +144,9 @@ export class Scene3 implements Scene {
         this.lights.setTheme(theme);
         this.renderer.toneMappingExposure = dark ? 0.92 : 1;
         surfaceUniforms.edgeStrength.value = dark ? 0.5 : 0.42;
-        surfaceUniforms.gridStrength.value = dark ? 0.55 : 0.3;
+        surfaceUniforms.gridStrength.value = dark ? 0.4 : 0.28;
         for (const material of this.surfaces.values())
-            (material as MeshStandardMaterial).envMapIntensity = dark ? 0.3 : 0.45;
+            (material as MeshStandardMaterial).envMapIntensity = dark ? 0.35 : 0.55;
         for (const marks of [this.links, this.selection, this.contactMarks]) marks?.setTheme(theme);
         for (const { mesh } of this.planes)
             (mesh.material as MeshStandardMaterial).color.setRGB(...theme.neutral, "srgb");
@@ -233,7 +237,7 @@ export class Scene3 implements Scene {
         this.camera.near = distance / 100;
         this.camera.far = distance * 10 + this.size * 20;
         this.camera.updateProjectionMatrix();
-        this.contactMarks?.update(this.recording, this.recording.frameAt(this.time), this.origin, distance * 0.06);
+        this.contactMarks?.update(this.recording, this.recording.frameAt(this.time), this.origin, distance * 0.04);
         this.placeLabel();
         this.renderer.render(this.space, this.camera);
     }
@@ -245,30 +249,33 @@ export class Scene3 implements Scene {
         this.poseOf(this.selected, new Matrix4());
         const top = position.clone().addScaledVector(this.up, Math.min(this.reaches[this.selected], this.size));
         const { x, y, z } = top.project(this.camera);
-        const { width, height } = this.element.getBoundingClientRect();
+        const { width, height } = this;
         this.label.hidden = z > 1;
         this.label.style.transform =
             `translate(-50%, -100%) translate(${((x + 1) / 2) * width}px, ${((1 - y) / 2) * height - 8}px)`;
     }
 
     resize(width: number, height: number, pixelRatio: number) {
-        this.renderer.setPixelRatio(pixelRatio);
+        this.width = width;
+        this.height = height;
+        this.renderer.setPixelRatio(Math.min(pixelRatio, Math.sqrt(mostPixels / Math.max(1, width * height))));
         this.renderer.setSize(width, height);
         this.selection.resize(width, height);
+        this.links.resize(width, height);
         this.camera.aspect = width / Math.max(1, height);
-        this.applyInsets(width, height);
+        this.applyInsets();
         if (this.untouched) this.fit();
     }
 
     setInsets(insets: Insets) {
         this.insets = insets;
-        const { width, height } = this.element.getBoundingClientRect();
-        this.applyInsets(width, height);
+        this.applyInsets();
         if (this.untouched) this.fit();
     }
 
     /** Moves the middle of the picture to the middle of what the controls leave free. */
-    private applyInsets(width: number, height: number) {
+    private applyInsets() {
+        const { width, height } = this;
         const { left, right, top, bottom } = this.insets;
         this.camera.setViewOffset(width, height, (right - left) / 2, (bottom - top) / 2, width, height);
     }
@@ -300,7 +307,7 @@ export class Scene3 implements Scene {
     }
 
     pick(x: number, y: number): number {
-        const { width, height } = this.element.getBoundingClientRect();
+        const { width, height } = this;
         const raycaster = new Raycaster();
         raycaster.setFromCamera(new Vector2((x / width) * 2 - 1, 1 - (y / height) * 2), this.camera);
         return this.batches.pick(raycaster)?.body ?? -1;
@@ -328,7 +335,7 @@ export class Scene3 implements Scene {
             .applyQuaternion(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.up));
         const right = new Vector3().crossVectors(this.up, direction).normalize();
         const above = new Vector3().crossVectors(direction, right);
-        const { width, height } = this.element.getBoundingClientRect();
+        const { width, height } = this;
         const { left, right: rightInset, top, bottom } = this.insets;
         const slope = Math.tan((this.camera.fov / 2) * degrees);
         const slopeY = slope * Math.max(0.3, 1 - (top + bottom) / Math.max(1, height));
@@ -352,6 +359,16 @@ export class Scene3 implements Scene {
 
 const position = new Vector3();
 const rotation = new Quaternion();
+
+/** False where the processor itself has to draw every pixel. */
+function hasGraphicsProcessor(): boolean {
+    const context = document.createElement("canvas").getContext("webgl2");
+    const names = context?.getExtension("WEBGL_debug_renderer_info");
+    if (!context || !names) return true;
+    const name = String(context.getParameter(names.UNMASKED_RENDERER_WEBGL));
+    context.getExtension("WEBGL_lose_context")?.loseContext();
+    return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
 
 /** The axis against which gravity pulls. */
 function upwards(gravity: number[]): Vector3 {

@@ -1,6 +1,6 @@
 // Shapes of space as triangles. Besides place and normal every corner carries
-//   edge: its distance from each side of its triangle where that side is an edge of the solid (1 where it is
-//         not), by which the shader draws edges as lines of constant width, and
+//   edge: three numbers, one of which falls to 0 towards an edge of the solid, by which the shader draws
+//         edges as lines of constant width (1 where there is none), and
 //   tint: a factor on the colour, which shows how round things turn.
 
 import { BufferGeometry, Float32BufferAttribute, Matrix4, Quaternion, Vector3 } from "three";
@@ -20,34 +20,39 @@ class Triangles {
     private readonly edges: number[] = [];
     private readonly tints: number[] = [];
 
-    /** `sharp[i]` tells whether the side opposite to corner i is an edge; `size` is the triangle's own, about. */
-    add(corners: Vector3[], normals: Vector3[], sharp: boolean[], size = 1, tint = 1) {
+    add(corners: Vector3[], normals: Vector3[], edges: number[][], tint = 1) {
         for (let i = 0; i < 3; ++i) {
             this.places.push(...corners[i].toArray());
             this.normals.push(...normals[i].toArray());
+            this.edges.push(...edges[i]);
             this.tints.push(tint);
-            for (let side = 0; side < 3; ++side) this.edges.push(!sharp[side] ? 1 : side === i ? size : 0);
         }
     }
 
-    /** A flat convex face with edges all around. */
-    face(corners: Vector3[], sharp = true, tint = 1) {
+    /** A flat convex face, with edges all around if it is `sharp`. */
+    face(corners: Vector3[], sharp: boolean) {
         const normal = faceNormal(corners);
-        for (let i = 1; i + 1 < corners.length; ++i)
-            this.add([corners[0], corners[i], corners[i + 1]], [normal, normal, normal],
-                [sharp, sharp && i + 2 === corners.length, sharp && i === 1], 1, tint);
+        for (let i = 1; i + 1 < corners.length; ++i) {
+            // Which sides of this triangle, each opposite to a corner, are sides of the face.
+            const border = [true, i + 2 === corners.length, i === 1];
+            const edges = [0, 1, 2].map((corner) =>
+                border.map((is, side) => (sharp && is && side !== corner ? 0 : 1)));
+            this.add([corners[0], corners[i], corners[i + 1]], [normal, normal, normal], edges);
+        }
     }
 
     /** A smooth surface over a grid of points, seen from where columns run rightwards and rows upwards;
      *  `sharpRows` are the rows that are edges. */
     grid(points: Vector3[][], normals: Vector3[][], sharpRows: number[] = [], tint = (_column: number) => 1) {
+        // Neighbouring rows use different numbers, so that between two edges each keeps its own distance.
+        const edge = (row: number) => [0, 1, 2].map((k) => (sharpRows.includes(row) && row % 2 === k ? 0 : 1));
+        const add = (column: number, ...places: [number, number][]) =>
+            this.add(places.map(([r, c]) => points[r][c]), places.map(([r, c]) => normals[r][c]),
+                places.map(([r]) => edge(r)), tint(column));
         for (let r = 0; r + 1 < points.length; ++r)
             for (let c = 0; c + 1 < points[r].length; ++c) {
-                const pick = (from: Vector3[][], ...places: [number, number][]) => places.map(([i, j]) => from[i][j]);
-                const lower: [number, number][] = [[r, c], [r, c + 1], [r + 1, c + 1]];
-                const upper: [number, number][] = [[r, c], [r + 1, c + 1], [r + 1, c]];
-                this.add(pick(points, ...lower), pick(normals, ...lower), [false, false, sharpRows.includes(r)], 1, tint(c));
-                this.add(pick(points, ...upper), pick(normals, ...upper), [sharpRows.includes(r + 1), false, false], 1, tint(c));
+                add(c, [r, c], [r, c + 1], [r + 1, c + 1]);
+                add(c, [r, c], [r + 1, c + 1], [r + 1, c]);
             }
     }
 
@@ -84,21 +89,16 @@ function ball(detail: number): BufferGeometry {
     for (let eighth = 0; eighth < 8; ++eighth) {
         const signs = [1, 2, 4].map((bit) => (eighth & bit ? -1 : 1));
         const even = signs[0] * signs[1] * signs[2] > 0;
-        const point = (i: number, j: number) =>
-            new Vector3(signs[0] * i, signs[1] * j, signs[2] * (detail - i - j)).normalize();
-        const add = (corners: [number, number][]) => {
+        const add = (...corners: [number, number][]) => {
             const ordered = even ? corners : [corners[0], corners[2], corners[1]];
-            const places = ordered.map(([i, j]) => point(i, j));
-            const on = (value: (c: [number, number]) => number, skip: number) =>
-                ordered.every((corner, k) => k === skip || value(corner) === 0);
-            const sharp = [0, 1, 2].map(
-                (k) => on(([i]) => i, k) || on(([, j]) => j, k) || on(([i, j]) => detail - i - j, k));
-            triangles.add(places, places, sharp, 1 / detail, even ? 1 : 0.86);
+            const shares = ordered.map(([i, j]) => new Vector3(i, j, detail - i - j).normalize());
+            const places = shares.map((p) => new Vector3(signs[0] * p.x, signs[1] * p.y, signs[2] * p.z));
+            triangles.add(places, places, shares.map((p) => p.toArray()), even ? 1 : 0.86);
         };
         for (let i = 0; i < detail; ++i)
             for (let j = 0; i + j < detail; ++j) {
-                add([[i, j], [i + 1, j], [i, j + 1]]);
-                if (i + j + 1 < detail) add([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
+                add([i, j], [i + 1, j], [i, j + 1]);
+                if (i + j + 1 < detail) add([i + 1, j], [i + 1, j + 1], [i, j + 1]);
             }
     }
     return triangles.finish();
@@ -133,7 +133,7 @@ function cap(triangles: Triangles, y: number, detail: number) {
     for (let k = 0; k < around; ++k) {
         const ends = y > 0 ? [rim(k), rim(k + 1)] : [rim(k + 1), rim(k)];
         const tint = Math.floor(k / detail) % 2 ? 0.88 : 1;
-        triangles.add([center, ...ends], [normal, normal, normal], [true, false, false], 1, tint);
+        triangles.add([center, ...ends], [normal, normal, normal], [[1, 1, 1], [0, 1, 1], [0, 1, 1]], tint);
     }
 }
 
@@ -156,14 +156,15 @@ function cone(detail: number): BufferGeometry {
 
 /** A capsule of unit radius about the y axis, `length` between the centres of its ends. */
 function capsule(length: number, detail: number): BufferGeometry {
+    const rows = Math.ceil(detail / 2); // of each end
     const profile: { radius: number; y: number; normal: [number, number] }[] = [];
-    for (let k = 0; k <= 2 * detail + 1; ++k) {
-        const upper = k > detail;
-        const angle = (Math.PI / 2) * ((upper ? k - 1 : k) / detail - 1);
+    for (let k = 0; k <= 2 * rows + 1; ++k) {
+        const upper = k > rows;
+        const angle = (Math.PI / 2) * ((upper ? k - 1 : k) / rows - 1);
         const normal: [number, number] = [Math.cos(angle), Math.sin(angle)];
         profile.push({ radius: normal[0], y: normal[1] + (upper ? length / 2 : -length / 2), normal });
     }
-    return turned(profile, [detail, detail + 1], detail).finish();
+    return turned(profile, [rows, rows + 1], detail).finish();
 }
 
 /** A convex solid grown by `rounding`: its faces moved outwards, joined along the edges by parts of

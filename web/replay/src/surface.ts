@@ -67,7 +67,7 @@ const finishes: Record<Finish, { roughness: number; metalness: number }> = {
     matte: { roughness: 0.92, metalness: 0 },
     satin: { roughness: 0.62, metalness: 0 },
     gloss: { roughness: 0.28, metalness: 0 },
-    metal: { roughness: 0.36, metalness: 0.7 },
+    metal: { roughness: 0.38, metalness: 0.4 },
 };
 
 export function surfaceMaterial(finish: Finish, gridded: boolean, environment: Texture): MeshStandardMaterial {

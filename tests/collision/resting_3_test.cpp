@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "carom/collide.hpp"
+#include "random.hpp"
+
+namespace carom::test::space {
+
+namespace {
+
+/// A shape and how it is turned, with the height of its centre over the floor that it lies on, and of its top.
+struct Posture {
+    std::string name;
+    Geometry<3> geometry;
+    Rotation3 turn;
+    double below;  ///< from the lowest point up to the centre
+    double above;
+    int on_flat;  ///< points of contact on a wide flat face
+    int on_line;  ///< on a long thing lying along the z axis
+};
+
+const Rotation3 upright{};
+const Rotation3 upside_down = Rotation3::from_axis_angle({1, 0, 0}, 3.14159265358979323846);
+const Rotation3 along_z = Rotation3::from_axis_angle({1, 0, 0}, 0.5 * 3.14159265358979323846);
+
+std::vector<Vec3> prism_corners(double half_height, double radius) {
+    std::vector<Vec3> corners;
+    for (const Vec2& p : {Vec2{1, 0}, {0.5, 0.8}, {-0.5, 0.8}, {-1, 0}, {-0.5, -0.8}, {0.5, -0.8}}) {
+        for (const double y : {-half_height, half_height}) corners.push_back({radius * p.x, y, radius * p.y});
+    }
+    return corners;
+}
+
+/// Lies on its side: a cone's generator line is tilted against its axis by atan(radius/height), here 30 degrees.
+Rotation3 cone_on_its_side() {
+    return Rotation3::from_axis_angle({1, 0, 0}, (0.5 + 1.0 / 6) * 3.14159265358979323846);
+}
+
+std::vector<Posture> postures() {
+    const double root_3 = std::sqrt(3.0);
+    return {
+        {"ball", Ball{0.5}, upright, 0.5, 0.5, 1, 1},
+        {"box", Box3{{1, 1, 1}}, upright, 0.5, 0.5, 4, 2},
+        {"thin plate", Box3{{2, 0.01, 2}}, upright, 0.005, 0.005, 4, 2},
+        {"rounded box", Box3{{1, 1, 1}, 0.1}, upright, 0.5, 0.5, 4, 2},
+        {"standing capsule", Capsule3{{0, -0.5, 0}, {0, 0.5, 0}, 0.3}, upright, 0.8, 0.8, 1, 1},
+        {"lying capsule", Capsule3{{0, 0, -0.5}, {0, 0, 0.5}, 0.3}, upright, 0.3, 0.3, 2, 2},
+        {"prism", Hull3{prism_corners(0.4, 0.6)}, upright, 0.4, 0.4, 4, 2},
+        {"rounded prism", Hull3{prism_corners(0.3, 0.6), 0.1}, upright, 0.4, 0.4, 4, 2},
+        {"tetrahedron", Hull3{{{-0.6, -0.3, -0.5}, {0.6, -0.3, -0.5}, {0, -0.3, 0.7}, {0, 0.6, 0}}}, upright, 0.3, 0.6, 3, 2},
+        {"standing cylinder", Cylinder{0.4, 1}, upright, 0.5, 0.5, 4, 2},
+        {"lying cylinder", Cylinder{0.4, 1}, along_z, 0.4, 0.4, 2, 2},
+        {"standing cone", Cone{0.5, 1}, upright, 0.5, 0.5, 4, 2},
+        {"cone on its tip", Cone{0.5, 1}, upside_down, 0.5, 0.5, 1, 1},
+        {"lying cone", Cone{1 / root_3, 1}, cone_on_its_side(), 0.25, 0.25, 2, 2},
+    };
+}
+
+/// Wide flat tops to lie on, each with its top at y = 0.
+struct Ground {
+    std::string name;
+    Geometry<3> geometry;
+    Transform3 placed;
+    double off_center = 0;  ///< how far from the middle, across, things are put down
+};
+
+std::vector<Ground> flat_grounds() {
+    return {
+        {"plane", Plane3{{0, 1, 0}, 0}, {}, 0.01},
+        {"box", Box3{{6, 1, 6}}, {{0, -0.5, 0}, upright}, 0.01},
+        {"rounded box", Box3{{6, 1, 6}, 0.2}, {{0, -0.5, 0}, upright}, 0.01},
+        {"hull", Hull3{prism_corners(0.5, 4)}, {{0, -0.5, 0}, upright}, 0.01},
+        {"cylinder", Cylinder{4, 1}, {{0, -0.5, 0}, upright}, 0.01},
+        {"cone", Cone{4, 2}, {{0, -1, 0}, upside_down}, 0.01},
+    };
+}
+
+std::vector<Ground> long_grounds() {
+    return {
+        {"capsule", Capsule3{{0, 0, -4}, {0, 0, 4}, 0.5}, {{0, -0.5, 0}, upright}},
+        {"cylinder", Cylinder{0.5, 8}, {{0, -0.5, 0}, along_z}},
+    };
+}
+
+std::set<std::uint32_t> features(const Manifold<3>& manifold) {
+    std::set<std::uint32_t> ids;
+    for (int i = 0; i < manifold.count; ++i) ids.insert(manifold.points[static_cast<std::size_t>(i)].feature);
+    return ids;
+}
+
+/// Places the shape a little deeper or higher and a little tilted, again and again.
+void expect_steady(const Posture& posture, const Ground& ground, int count) {
+    SCOPED_TRACE(posture.name + " on " + ground.name);
+    const Solid<3> a(ground.geometry), b(posture.geometry);
+    Random random(7);
+    std::set<std::uint32_t> first;
+    for (int n = 0; n < 40; ++n) {
+        const double depth = random.between(-1e-4, 1e-3), tremble = n % 2 ? 1e-7 : 0;
+        const Rotation3 tilt = Rotation3::from_axis_angle(random.direction<3>(), tremble);
+        const Vec3 center = Vec3{ground.off_center, posture.below - depth, 0.02} + tremble * random.direction<3>();
+        const Manifold<3> found = collide<3>(a, ground.placed, b, {center, tilt * posture.turn}, 0.01);
+        ASSERT_EQ(found.count, count) << "depth " << depth;
+        EXPECT_NEAR(found.normal.y, 1, 1e-9);
+        for (int i = 0; i < found.count; ++i) {
+            EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].separation, -depth, 1e-6);
+            EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].position.y, -0.5 * depth, 1e-6);
+        }
+        EXPECT_EQ(features(found).size(), static_cast<std::size_t>(count)) << "every point has its own feature";
+        if (n == 0) first = features(found);
+        EXPECT_EQ(features(found), first) << "features stay the same, depth " << depth;
+    }
+}
+
+TEST(Resting3, OnFlatGround) {
+    for (const Ground& ground : flat_grounds()) {
+        for (const Posture& posture : postures()) expect_steady(posture, ground, posture.on_flat);
+    }
+}
+
+TEST(Resting3, OnALyingCapsuleOrCylinder) {
+    for (const Ground& ground : long_grounds()) {
+        for (const Posture& posture : postures()) expect_steady(posture, ground, posture.on_line);
+    }
+}
+
+}  // namespace
+
+}  // namespace carom::test::space
