@@ -156,7 +156,7 @@ void add_bench(CLI::App& program, int& status) {
                      "Most threads to use, a row for each; this version uses one whatever is given")
         ->type_name("1,2")
         ->delimiter(',')
-        ->expected(1)
+        ->allow_extra_args(false)
         ->check(CLI::Range(1, 1024).description(""));
     command->add_option("--repeat", options->repeat, "How often each is run")
         ->capture_default_str()

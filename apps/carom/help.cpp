@@ -18,8 +18,9 @@ void add_help(CLI::App& program, int& status) {
             throw Error(fmt::format("help: \"{}\" is not a command; see carom help", *topic));
         const CLI::App* about = topic->empty() ? &program : found.front();
         // App::help would speak of the command that runs, which is help itself.
-        fmt::print("{}", about->get_formatter()->make_help(about, about == &program ? "carom" : "carom " + *topic,
-                                                           CLI::AppFormatMode::Normal));
+        fmt::print("{}",
+                   about->get_formatter()->make_help(about, about == &program ? "carom" : "carom " + *topic,
+                                                     CLI::AppFormatMode::Normal));
         status = fine;
     });
 }

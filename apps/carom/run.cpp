@@ -135,7 +135,7 @@ void add_run(CLI::App& program, int& status) {
                      "Only these bodies in the trace: names, or #index")
         ->type_name("A,B")
         ->delimiter(',')
-        ->expected(1)
+        ->allow_extra_args(false)
         ->needs("--trace");
     command->add_option("--replay", options->replay, "Write a page to FILE that plays the run in a browser")
         ->type_name("FILE.html");

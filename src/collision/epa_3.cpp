@@ -31,25 +31,23 @@ class Expansion {
   public:
     Expansion(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a, const Gap3& guess)
         : a_(a), b_(b), b_in_a_(b_in_a), best_(guess) {
-        vertices_.reserve(most_vertices);
-        triangles_.reserve(4 * most_vertices);
+        vertices_.reserve(64);
+        triangles_.reserve(192);
+        queue_.reserve(192);
     }
 
     Gap3 run(double tolerance) {
         if (!begin()) return best_;
-        while (vertices_.size() < most_vertices) {
-            const std::uint32_t nearest = nearest_triangle();
-            if (nearest == none) break;
+        while (vertices_.size() < most_vertices && !queue_.empty()) {
+            const std::uint32_t nearest = take_nearest();
+            if (!triangles_[nearest].alive) continue;
             const Vec3 normal = triangles_[nearest].normal;
             const double offset = triangles_[nearest].offset;
             // The polytope lies within the difference: no direction has less depth than its nearest face.
             if (-best_.distance - offset <= tolerance) break;
             const Vec3 vertex = extreme(normal);
-            if (dot(normal, vertex) - offset <= 1e-3 * tolerance) {
-                triangles_[nearest].offset = 1e300;  // the surface itself: the best over it is known
-                continue;
-            }
-            if (!grow(nearest, vertex)) break;
+            // Where nothing lies beyond, this is the surface itself, and the best over it is known.
+            if (dot(normal, vertex) - offset > 1e-3 * tolerance && !grow(nearest, vertex)) break;
         }
         return best_;
     }
@@ -116,18 +114,22 @@ class Expansion {
         // A triangle without area has no normal; its neighbours cover its place.
         const bool flat = size <= 1e-14 * (length_squared(q - p) + length_squared(r - p));
         const Vec3 normal = flat ? Vec3{} : across / size;
-        triangles_.push_back({corners, neighbors, normal, flat ? 1e300 : dot(normal, p), true});
+        triangles_.push_back({corners, neighbors, normal, dot(normal, p), true});
+        if (flat) return;
+        queue_.push_back(static_cast<std::uint32_t>(triangles_.size() - 1));
+        std::push_heap(queue_.begin(), queue_.end(), [this](auto i, auto j) { return later(i, j); });
     }
 
-    std::uint32_t nearest_triangle() const {
-        std::uint32_t nearest = none;
-        double least = 1e299;
-        for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-            if (triangles_[i].alive && triangles_[i].offset < least) {
-                least = triangles_[i].offset;
-                nearest = i;
-            }
-        }
+    /// Of two triangles, the one that is taken later: the further one, or the newer of equals.
+    bool later(std::uint32_t i, std::uint32_t j) const {
+        const double p = triangles_[i].offset, q = triangles_[j].offset;
+        return p != q ? p > q : i > j;
+    }
+
+    std::uint32_t take_nearest() {
+        std::pop_heap(queue_.begin(), queue_.end(), [this](auto i, auto j) { return later(i, j); });
+        const std::uint32_t nearest = queue_.back();
+        queue_.pop_back();
         return nearest;
     }
 
@@ -178,6 +180,7 @@ class Expansion {
     Gap3 best_;
     std::vector<Vec3> vertices_;
     std::vector<Triangle> triangles_;
+    std::vector<std::uint32_t> queue_;  ///< a heap of triangles, the nearest to the origin first
     std::vector<HorizonEdge> horizon_;
 };
 

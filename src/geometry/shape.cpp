@@ -168,7 +168,9 @@ Vec<D> furthest_corner(const Polytope<D>& core, const Vec<D>& direction) {
 
 Vec3 round_support(const Shape<3>& shape, const Vec3& direction) {
     const double along = dot(direction, shape.b);
-    const Vec3 outward = direction - along * shape.b;
+    // Taken twice: near the axis, rounding of the first difference may leave more along it than across it.
+    Vec3 outward = direction - along * shape.b;
+    outward -= dot(outward, shape.b) * shape.b;
     const double outward_length = length(outward);
     const Vec3 rim = outward_length > 0 ? outward * (shape.radius / outward_length) : Vec3{};
     const Vec3 up = shape.half_height * shape.b;

@@ -198,10 +198,11 @@ std::string listed(std::span<const std::string_view> names) {
 }
 
 std::string suggestion(std::string_view written, std::span<const std::string_view> names) {
-    constexpr std::size_t longest = 40;
+    // Beyond a few slips, and in the shortest names, what is near is another word rather than this one.
+    constexpr std::size_t longest = 40, most_slips = 3;
     if (written.size() > longest) return {};
     std::string_view nearest;
-    std::size_t least = std::max<std::size_t>(1, written.size() / 3) + 1;
+    std::size_t least = std::min(written.size() / 2, most_slips) + 1;
     for (const std::string_view name : names) {
         if (name.size() > longest) continue;
         const std::size_t distance = edit_distance(written, name);

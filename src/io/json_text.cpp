@@ -142,9 +142,9 @@ struct Close {
 
 std::string path_step(std::string_view key) {
     const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-    if (!key.empty() && std::all_of(key.begin(), key.end(), plain)) return fmt::format(".{}", key);
-    return fmt::format(
-        "[{}]", json(shortened(std::string(key), 60)).dump(-1, ' ', false, json::error_handler_t::replace));
+    const std::string shown = shortened(std::string(key), 60);
+    if (!shown.empty() && std::all_of(shown.begin(), shown.end(), plain)) return "." + shown;
+    return fmt::format("[{}]", json(shown).dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
 std::string read_text_file(const fs::path& path, const JsonLimits& limits) {

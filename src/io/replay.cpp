@@ -1,13 +1,12 @@
 #include "io/replay.hpp"
 
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <system_error>
 
 #include "carom/error.hpp"
+#include "io/output_file.hpp"
 #include "io/replay_data.hpp"
 #include "io/replay_template.hpp"
 
@@ -15,7 +14,6 @@ namespace carom::io {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 double finite_or_zero(double value) { return std::isfinite(value) ? value : 0.0; }
 
@@ -23,7 +21,7 @@ double finite_or_zero(double value) { return std::isfinite(value) ? value : 0.0;
 double shortened(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.7g", finite_or_zero(value));
-    return std::stod(text);
+    return std::strtod(text, nullptr);
 }
 
 json vector_json(const ReplayVector& v, int dimension) {
@@ -182,21 +180,6 @@ std::string filled(std::string_view page,
     return result.append(page);
 }
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-    throw Error("replay file '" + path.string() + "' cannot be written: " + reason);
-}
-
-/// Returns the reason when it does not succeed, an empty string when it does.
-std::string write_bytes(const fs::path& path, std::string_view bytes) {
-    std::FILE* file = std::fopen(path.string().c_str(), "wb");
-    if (!file) return std::generic_category().message(errno);
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    const int write_error = errno;
-    const bool closed = std::fclose(file) == 0;
-    if (written && closed) return {};
-    return std::generic_category().message(written ? errno : write_error);
-}
-
 }  // namespace
 
 ReplayRotation replay_rotation(double angle) { return {0, 0, std::sin(angle / 2), std::cos(angle / 2)}; }
@@ -212,27 +195,10 @@ std::string replay_html(const Replay& replay, std::string_view page) {
         {{"@carom-header@", header}, {"@carom-motion@", motion.text}, {"@carom-contacts@", contacts.text}});
 }
 
-void write_replay(const Replay& replay, const fs::path& path) {
-    const std::string html = replay_html(replay, replay_template());
-    std::error_code error;
-    // A device or a pipe is written to as it is; a file is replaced only when the new one is complete.
-    if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
-        if (const std::string reason = write_bytes(path, html); !reason.empty()) refuse(path, reason);
-        return;
-    }
-    fs::path target = fs::canonical(path, error);  // what a link leads to is replaced, not the link
-    if (error) target = path;
-    fs::path partial = target;
-    partial += ".part";
-    std::string reason = write_bytes(partial, html);
-    if (reason.empty()) {
-        fs::rename(partial, target, error);
-        if (error) reason = error.message();
-    }
-    if (!reason.empty()) {
-        fs::remove(partial, error);
-        refuse(path, reason);
-    }
+void write_replay(const Replay& replay, const std::filesystem::path& path) {
+    OutputFile file(path, "replay");
+    file.write(replay_html(replay, replay_template()));
+    file.finish();
 }
 
 }  // namespace carom::io

@@ -110,8 +110,7 @@ std::array<Vec<D, T>, D - 1> tangents(const Vec<D, T>& normal) {
     } else {
         using std::fabs;
         using std::sqrt;
-        // Across the x axis, or across the z axis when the normal is too near to the former; the limit 1/√3
-        // keeps `across` longest.
+        // normal × x axis, or normal × z axis when the normal is near the x axis: never shorter than 1/√3.
         const auto mostly_x = fabs(normal.x) > T(0.57735027);
         const T zero(0);
         const Vec<3, T> across{select(mostly_x, normal.y, zero), select(mostly_x, -normal.x, normal.z),

@@ -98,6 +98,8 @@ struct WorldState {
     // narrow_phase.cpp: who touches whom, and where.
     void collide(double dt);
     void update_contact(ContactRecord<D>& contact, double dt) const;
+    void touch(ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b, double reach) const;
+    void meet_ahead(ContactRecord<D>& contact, double dt) const;
 
     // sleep.cpp
     void wake_touched(double dt);

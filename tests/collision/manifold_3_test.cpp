@@ -9,10 +9,11 @@ namespace carom::test::space {
 
 namespace {
 
-/// Is the direction one of least depth, or within 2.6 degrees of it (where faces are nearly parallel, theirs is
-/// taken)?
+/// Is the direction one of least depth, or close to it? Where faces are nearly parallel theirs is taken, and where
+/// the shapes barely meet several are as good.
 bool is_good_normal(const Body3& a, const Body3& b, const Vec3& normal, const Separation<3>& truth, double tolerance) {
-    return gap_along(a, b, normal) >= truth.distance - tolerance || dot(normal, truth.axis) > 0.99897;
+    const double cosine = std::fabs(truth.distance) < 0.02 * smaller_size(a, b) ? 0.97 : 0.9975;
+    return gap_along(a, b, normal) >= truth.distance - tolerance || dot(normal, truth.axis) > cosine;
 }
 
 /// What every manifold must be, whatever the shapes: `reach` is the gap up to which points were asked for.
@@ -37,7 +38,7 @@ void expect_sound(const Scene& scene, const Manifold<3>& found, double reach) {
         const ManifoldPoint<3>& point = found.points[static_cast<std::size_t>(i)];
         EXPECT_LE(point.separation, reach);
         // Only the deepest point is on both surfaces; above the others rounded shapes curve away.
-        const double slack = 0.02 * size + (point.separation > least ? a.radius() + b.radius() : 0);
+        const double slack = 0.02 * size + (point.separation > least ? 1 : 0.05) * (a.radius() + b.radius());
         const Vec3 half = 0.5 * point.separation * found.normal;
         EXPECT_LE(std::fabs(a.height(point.position - half)), slack) << "on the surface of a";
         EXPECT_LE(std::fabs(b.height(point.position + half)), slack) << "on the surface of b";
@@ -46,8 +47,8 @@ void expect_sound(const Scene& scene, const Manifold<3>& found, double reach) {
     }
 }
 
-/// Are the two the same but for rounding? The features are too, unless two shapes of a kind have changed places.
-void expect_same(const Manifold<3>& expected, const Manifold<3>& found, double tolerance, bool same_features) {
+/// Are the two the same but for rounding, feature by feature?
+void expect_same(const Manifold<3>& expected, const Manifold<3>& found, double tolerance) {
     ASSERT_EQ(found.count, expected.count);
     EXPECT_GT(dot(found.normal, expected.normal), 1 - 1e-6);
     for (int i = 0; i < found.count; ++i) {
@@ -58,17 +59,21 @@ void expect_same(const Manifold<3>& expected, const Manifold<3>& found, double t
         });
         ASSERT_NE(same, end) << "point " << i;
         EXPECT_NEAR(same->separation, point.separation, tolerance);
-        if (same_features) EXPECT_EQ(same->feature, point.feature);
+        EXPECT_EQ(same->feature, point.feature);
     }
 }
 
-/// Does the answer hang on a hair: is the gap, or that of a point, the reach?
+/// Does the answer hang on a hair: is the gap, or that of a point, the reach; or is the direction open, because corners
+/// of the cores meet, or because one shape sticks deep in the other?
 bool is_delicate(const Scene& scene, const Manifold<3>& found, double reach, double tolerance) {
     const auto truth = *separation<3>(scene.a, scene.a_placed, scene.b, scene.b_placed);
-    bool delicate = std::fabs(truth.distance - reach) < tolerance;
+    const double between_cores = truth.distance + scene.oracle_a().radius() + scene.oracle_b().radius();
+    if (found.count == 0 || -truth.distance > 0.25 * std::min(scene.oracle_a().thickness(), scene.oracle_b().thickness()))
+        return true;
+    bool delicate = std::fabs(truth.distance - reach) < tolerance || std::fabs(between_cores) < 10 * tolerance;
     for (int i = 0; i < found.count; ++i)
         delicate = delicate || std::fabs(found.points[static_cast<std::size_t>(i)].separation - reach) < tolerance;
-    return delicate || found.count == 0;
+    return delicate;
 }
 
 /// A contact must not depend on the order of the shapes or on where the world is.
@@ -83,11 +88,12 @@ void expect_invariant(const Scene& scene, const Manifold<3>& found, double reach
     const Transform3 a = motion * scene.a_placed, b = motion * scene.b_placed;
     {
         SCOPED_TRACE("moved");
-        expect_same(expected, collide<3>(scene.a, a, scene.b, b, reach), tolerance, true);
+        expect_same(expected, collide<3>(scene.a, a, scene.b, b, reach), tolerance);
     }
+    if (scene.a.index() == scene.b.index()) return;  // of two faces that are as good, the first shape's is taken
     SCOPED_TRACE("exchanged");
     expected.normal = -expected.normal;
-    expect_same(expected, collide<3>(scene.b, b, scene.a, a, reach), tolerance, scene.a.index() != scene.b.index());
+    expect_same(expected, collide<3>(scene.b, b, scene.a, a, reach), tolerance);
 }
 
 class EveryManifold : public testing::TestWithParam<std::tuple<int, int>> {};
@@ -97,7 +103,7 @@ TEST_P(EveryManifold, IsSound) {
     const auto kind_a = static_cast<Kind>(i), kind_b = static_cast<Kind>(j);
     if (kind_a == Kind::plane && kind_b == Kind::plane) return;
     Random random(static_cast<std::uint64_t>(1000 + 100 * i + j));
-    for (int n = 0; n < (getenv("N") ? atoi(getenv("N")) : 100); ++n) {
+    for (int n = 0; n < (getenv("N") ? atoi(getenv("N")) : 150); ++n) {
         const bool aligned = n % 3 == 0;
         Scene scene(kind_a, kind_b, aligned, random);
         scene.bring_to(random);

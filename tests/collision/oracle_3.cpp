@@ -67,6 +67,8 @@ void Body3::set(const Plane3& plane) {
     plane_ = true;
     half_space_ = {normalized(plane.normal), plane.offset};
     faces_ = {{half_space_.normal, half_space_.offset}};
+    size_ = 0;
+    thickness_ = 1e300;
 }
 
 void Body3::set_revolved(double bottom, double top, double height) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "brute_2.hpp"
 #include "carom/collide.hpp"
 
@@ -326,6 +328,24 @@ TEST(Pairs2, resting_boxes_have_two_points) {
     }
 }
 
+TEST(Pairs2, what_is_symmetric_stays_so_to_the_last_bit) {
+    const ShapeDefinition2 floor{.geometry = Plane2{{0, 1}, 0.37}};
+    const ShapeDefinition2 roof{.geometry = Hull2{{{-0.7, -0.3}, {0.7, -0.3}, {0, 1.1}}, 0.1}};
+    const ShapeDefinition2 bar{.geometry = Capsule2{{-0.61, 0}, {0.61, 0}, 0.3}};
+    for (const auto& [lower, upper, height] :
+         {std::tuple(box(1.3, 0.7), box(0.9, 0.3), 0.49), std::tuple(box(0.9, 0.7, 0.1), box(1.3, 0.3), 0.51),
+          std::tuple(floor, box(0.9, 0.3), 0.51), std::tuple(floor, bar, 0.66),
+          std::tuple(box(3, 0.7), roof, 0.74), std::tuple(bar, bar, 0.6),
+          std::tuple(box(1, 0.7), bar, 0.64)}) {
+        const Manifold<2> m = Case{lower, upper, {}, {{0, height}, {}}}.collide(0.02);
+        ASSERT_EQ(m.count, 2);
+        EXPECT_EQ(m.normal, (Vec2{0, 1}));
+        EXPECT_EQ(m.points[0].position.x, -m.points[1].position.x);
+        EXPECT_EQ(m.points[0].position.y, m.points[1].position.y);
+        EXPECT_EQ(m.points[0].separation, m.points[1].separation);
+    }
+}
+
 TEST(Pairs2, capsules_at_rest_have_two_points) {
     const ShapeDefinition2 lying{.geometry = Capsule2{{-0.5, 0}, {0.5, 0}, 0.25}};
     const ShapeDefinition2 reversed{.geometry = Capsule2{{0.5, 0}, {-0.5, 0}, 0.25}};
@@ -347,7 +367,7 @@ TEST(Pairs2, features_outlive_small_motions) {
     for (const auto& [lower, upper] :
          {std::pair(box(1, 1), box(1, 1)), std::pair(box(1, 1), box(0.5, 1)), std::pair(box(1, 1), box(2, 1)),
           std::pair(box(1, 1, 0.1), box(1, 1, 0.2))}) {
-        const auto at = [&, &lower = lower, &upper = upper](double tilt) {
+        const auto at = [&](double tilt) {
             return Case{lower, upper, {}, {{0.01, 0.999}, normalized(Rotation2{1, tilt})}}.collide(0.02);
         };
         const Manifold<2> level = at(0);

@@ -125,6 +125,79 @@ TEST(Resting3, OnALyingCapsuleOrCylinder) {
     }
 }
 
+/// Two things that touch, and how many points hold them.
+struct Touching {
+    std::string name;
+    Geometry<3> below, above;
+    Transform3 below_placed, above_placed;  ///< so that they just touch, one over the other along y
+    int count;
+};
+
+Rotation3 about_y(double angle) { return Rotation3::from_axis_angle({0, 1, 0}, angle); }
+
+std::vector<Touching> touching() {
+    const Geometry<3> cube = Box3{{1, 1, 1}}, plank = Box3{{4, 0.1, 0.3}}, barrel = Cylinder{0.4, 1};
+    const Geometry<3> prism = Hull3{prism_corners(0.4, 0.6)}, rounded = Box3{{1, 1, 1}, 0.1};
+    const Transform3 here{};
+    const auto at = [](double x, double y, double z, const Rotation3& turn = {}) { return Transform3{{x, y, z}, turn}; };
+    return {
+        {"equal cubes, one on the other", cube, cube, here, at(0, 1, 0), 4},
+        {"equal cubes, shifted", cube, cube, here, at(0.3, 1, 0), 4},
+        {"equal cubes, shifted both ways", cube, cube, here, at(0.3, 1, -0.2), 4},
+        {"equal cubes, turned by 45 degrees", cube, cube, here, at(0, 1, 0, about_y(0.78539816339744831)), 4},
+        {"equal rounded boxes", rounded, rounded, here, at(0, 1, 0), 4},
+        {"equal prisms", prism, prism, here, at(0, 0.8, 0), 4},
+        {"prism on a cube of its width", cube, prism, here, at(0, 0.9, 0), 4},
+        {"planks, crossed", plank, plank, here, at(0.2, 0.1, 0.1, about_y(1.2)), 4},
+        {"planks, far out", plank, plank, here, at(1.9, 0.1, 0, about_y(1.57079632679489662)), 4},
+        {"small cube on a large one's edge", Box3{{4, 1, 4}}, Box3{{0.2, 0.2, 0.2}}, here, at(2, 0.6, 0.3), 4},
+        {"equal barrels", barrel, barrel, here, at(0, 1, 0), 4},
+        {"barrel on a wider one", Cylinder{0.6, 1}, barrel, here, at(0.1, 1, 0.05, about_y(0.3)), 4},
+        {"barrel on a narrower one", barrel, Cylinder{0.6, 1}, here, at(0.1, 1, 0.05, about_y(0.3)), 4},
+        {"barrel half over the edge of a box", Box3{{2, 1, 2}}, barrel, here, at(1, 1, 0.1), 4},
+        {"box on a barrel", barrel, cube, here, at(0.1, 1, 0, about_y(0.2)), 4},
+        {"box half over the edge of a barrel", barrel, cube, here, at(0.5, 1, 0, about_y(0.2)), 4},
+        {"barrels lying side on side", barrel, barrel, at(0, 0, 0, along_z), at(0, 0.8, 0.1, along_z), 2},
+        {"barrel lying across another", barrel, barrel, at(0, 0, 0, along_z), at(0, 0.8, 0.1, about_y(1) * along_z), 1},
+        {"barrel lying on the end of one that stands", barrel, barrel, here, at(0, 0.9, 0.1, along_z), 2},
+        {"capsule over the edge of a box", Box3{{2, 1, 2}}, Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, here, at(0.9, 0.7, 0), 2},
+        {"capsule across a capsule", Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, Capsule3{{0, 0, -1}, {0, 0, 1}, 0.2}, here,
+         at(0, 0.4, 0), 1},
+        {"capsules side by side", Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.3}, here,
+         at(0.5, 0.5, 0), 2},
+        {"cone on a cone's base", Cone{0.5, 1}, Cone{0.4, 1}, at(0, 0, 0, upside_down), at(0.05, 1, 0), 4},
+        {"edge of a box on a plate", Box3{{4, 0.2, 4}}, cube, here,
+         at(0, 0.1 + std::sqrt(0.5), 0, Rotation3::from_axis_angle({1, 0, 0}, 0.78539816339744831)), 2},
+        {"edge of a box across the edge of a box", cube, cube,
+         at(0, 0, 0, Rotation3::from_axis_angle({1, 0, 0}, 0.78539816339744831)),
+         at(0.1, std::sqrt(2.0), 0.05, Rotation3::from_axis_angle({0, 0, 1}, 0.78539816339744831)), 1},
+        {"corner of a box on a plate", Box3{{4, 0.2, 4}}, Hull3{{{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}, {0, 1.2, -1}}}, here,
+         at(0, 0.1, 0), 1},
+    };
+}
+
+TEST(Resting3, StacksKeepTheirPointsAndFeatures) {
+    for (const Touching& pair : touching()) {
+        SCOPED_TRACE(pair.name);
+        const Solid<3> below(pair.below), above(pair.above);
+        Random random(11);
+        std::set<std::uint32_t> first;
+        for (int n = 0; n < 40; ++n) {
+            const double depth = random.between(-1e-4, 1e-3), tremble = n % 2 ? 1e-7 : 0;
+            Transform3 placed = pair.above_placed;
+            placed.position += Vec3{0, -depth, 0} + tremble * random.direction<3>();
+            placed.rotation = Rotation3::from_axis_angle(random.direction<3>(), tremble) * placed.rotation;
+            const Manifold<3> found = collide<3>(below, pair.below_placed, above, placed, 0.01);
+            ASSERT_EQ(found.count, pair.count) << "depth " << depth;
+            EXPECT_NEAR(found.normal.y, 1, 1e-9);
+            for (int i = 0; i < found.count; ++i)
+                EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].separation, -depth, 1e-6);
+            if (n == 0) first = features(found);
+            EXPECT_EQ(features(found), first) << "features stay the same, depth " << depth;
+        }
+    }
+}
+
 }  // namespace
 
 }  // namespace carom::test::space

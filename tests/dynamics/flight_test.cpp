@@ -69,7 +69,7 @@ TEST(Decay, MatchesItsFormulas) {
         // (1 − φ1)/z cancels for small z: there its series.
         const long double phi2 = x < 1e-3L ? 0.5L - x / 6 + x * x / 24 - x * x * x / 120 : (1 - phi1) / x;
         EXPECT_NEAR(decay.factor, static_cast<double>(factor), 1e-15);
-        EXPECT_NEAR(decay.phi1, static_cast<double>(phi1), 1e-14);
+        EXPECT_NEAR(decay.phi1, static_cast<double>(phi1), 3e-14);
         EXPECT_NEAR(decay.phi2, static_cast<double>(phi2), 1e-13);
     }
     const Decay none(0, step);
@@ -134,7 +134,7 @@ TYPED_TEST(FlightIn, DampingOfTheOthersDecaysTheVelocityExactly) {
 }
 
 /// A mass on a spring to the origin of rest length 0 is a harmonic oscillator with ω = 1 (case A3). Its error
-/// is taken at a time that is not a multiple of the period.
+/// in place and velocity together is taken at a time that is not a multiple of the period.
 template <int D>
 double oscillator_error(Integrator integrator, int steps) {
     Flyer<D> flyer;
@@ -145,7 +145,7 @@ double oscillator_error(Integrator integrator, int steps) {
     flyer.forces.add({spring});
     flyer.state().position.x = 1;
     flyer.fly(integrator, 10.0 / steps, steps);
-    return std::fabs(flyer.state().position.x - std::cos(10.0));
+    return std::hypot(flyer.state().position.x - std::cos(10.0), flyer.state().velocity.x + std::sin(10.0));
 }
 
 TYPED_TEST(FlightIn, AnOscillatorShowsTheOrderOfEachIntegrator) {
@@ -213,7 +213,9 @@ TYPED_TEST(FlightIn, AnOrbitStaysOne) {
         }
         EXPECT_LT(worst, 1.05 * largest_error[static_cast<int>(integrator)]) << static_cast<int>(integrator);
         const Vec<D> x = flyer.state().position, v = flyer.state().velocity;
-        if (integrator != Integrator::rk4) EXPECT_NEAR(x.x * v.y - x.y * v.x, 0.8, 1e-12);
+        if (integrator != Integrator::rk4) {
+            EXPECT_NEAR(x.x * v.y - x.y * v.x, 0.8, 1e-12);
+        }
     }
 }
 
@@ -278,13 +280,9 @@ TEST(Flight, LockedAxesStayLocked) {
             flyer.fly(integrator, 1.0 / 60, 30);
             const BodyState<3>& s = flyer.state();
             for (int i = 0; i < 3; ++i) {
-                if (i == axis)
-                    EXPECT_EQ(s.position[i], 0);
-                else
-                    EXPECT_NE(s.position[i], 0);
-                if (i + 3 == axis) EXPECT_EQ(s.angular_velocity[i], 0);
+                EXPECT_EQ(s.position[i] == 0, i == axis);
+                EXPECT_EQ(s.angular_velocity[i] == 0, i + 3 == axis);
             }
-            EXPECT_NE(s.angular_velocity, Vec3{});
         }
     }
 }

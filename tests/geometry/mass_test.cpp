@@ -168,8 +168,11 @@ MassProperties<D> quadrature(const ShapeDefinition<D>& shape, const Sample<D>& s
     return result;
 }
 
+/// What the quadrature is off by, at most: more where sharp edges cross the rays.
 template <int D>
 constexpr double quadrature_error = D == 2 ? 1e-7 : 2e-4;
+template <int D>
+constexpr double smooth_error = D == 2 ? 1e-8 : 5e-6;
 
 template <int D>
 ShapeDefinition<D> placed(Random& random, const Geometry<D>& geometry) {
@@ -182,42 +185,41 @@ ShapeDefinition<D> placed(Random& random, const Geometry<D>& geometry) {
 }
 
 template <int D, class Make>
-void expect_as_by_rays(Make make) {
+void expect_as_by_rays(Make make, double error = quadrature_error<D>) {
     Random random(D);
     for (int k = 0; k < 8; ++k) {
         const Sample<D> sample = make(random);
         const ShapeDefinition<D> shape = placed<D>(random, sample.geometry);
         double size;
         const MassProperties<D> expected = quadrature(shape, sample, size);
-        expect_close(mass_properties(shape), expected, size, quadrature_error<D>);
-        EXPECT_NEAR(measure<D>(sample.geometry) * shape.material.density / expected.mass, 1,
-                    quadrature_error<D>);
+        expect_close(mass_properties(shape), expected, size, error);
+        EXPECT_NEAR(measure<D>(sample.geometry) * shape.material.density / expected.mass, 1, error);
     }
 }
 
 TEST(Mass, Ball) {
-    expect_as_by_rays<2>([](Random& random) { return random_ball<2>(random); });
-    expect_as_by_rays<3>([](Random& random) { return random_ball<3>(random); });
+    expect_as_by_rays<2>([](Random& random) { return random_ball<2>(random); }, smooth_error<2>);
+    expect_as_by_rays<3>([](Random& random) { return random_ball<3>(random); }, smooth_error<3>);
 }
 TEST(Mass, Box) {
     expect_as_by_rays<2>([](Random& random) { return random_box<2>(random, false); });
     expect_as_by_rays<3>([](Random& random) { return random_box<3>(random, false); });
 }
 TEST(Mass, RoundedBox) {
-    expect_as_by_rays<2>([](Random& random) { return random_box<2>(random, true); });
-    expect_as_by_rays<3>([](Random& random) { return random_box<3>(random, true); });
+    expect_as_by_rays<2>([](Random& random) { return random_box<2>(random, true); }, smooth_error<2>);
+    expect_as_by_rays<3>([](Random& random) { return random_box<3>(random, true); }, smooth_error<3>);
 }
 TEST(Mass, Capsule) {
-    expect_as_by_rays<2>([](Random& random) { return random_capsule<2>(random); });
-    expect_as_by_rays<3>([](Random& random) { return random_capsule<3>(random); });
+    expect_as_by_rays<2>([](Random& random) { return random_capsule<2>(random); }, smooth_error<2>);
+    expect_as_by_rays<3>([](Random& random) { return random_capsule<3>(random); }, smooth_error<3>);
 }
 TEST(Mass, Hull) {
     expect_as_by_rays<2>([](Random& random) { return random_hull<2>(random, false); });
     expect_as_by_rays<3>([](Random& random) { return random_hull<3>(random, false); });
 }
 TEST(Mass, RoundedHull) {
-    expect_as_by_rays<2>([](Random& random) { return random_hull<2>(random, true); });
-    expect_as_by_rays<3>([](Random& random) { return random_hull<3>(random, true); });
+    expect_as_by_rays<2>([](Random& random) { return random_hull<2>(random, true); }, smooth_error<2>);
+    expect_as_by_rays<3>([](Random& random) { return random_hull<3>(random, true); }, smooth_error<3>);
 }
 TEST(Mass, Cylinder) { expect_as_by_rays<3>(random_cylinder); }
 TEST(Mass, Cone) { expect_as_by_rays<3>(random_cone); }
@@ -332,7 +334,7 @@ TEST(Mass, ValuesFromBooks3) {
     // Steiner's formula for the volume of a rounded cube: V + r A + π r² (sum of edges)/4 + 4/3 π r³.
     const Hull3 cube{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}},
                      0.5};
-    EXPECT_DOUBLE_EQ(measure<3>(cube), 1 + 0.5 * 6 + pi * 0.25 * 3 + 4 * pi / 3 * 0.125);
+    EXPECT_NEAR(measure<3>(cube), 1 + 0.5 * 6 + pi * 0.25 * 3 + 4 * pi / 3 * 0.125, 2e-14);
 }
 
 /// The general formula for rounded polytopes, and that for boxes, capsules and balls.

@@ -1,4 +1,4 @@
-#include "io/support.hpp"
+#include "support.hpp"
 
 namespace carom::io {
 namespace {
@@ -11,7 +11,8 @@ struct Refusal {
 void expect_refused(const std::vector<Refusal>& refusals) {
     for (const auto& [scene, message] : refusals) {
         const std::string error = error_of([&] { parse_and_build(scene); });
-        EXPECT_EQ(error.substr(0, message.size() + 11), "test.json: " + message) << scene << "\nsays " << error;
+        EXPECT_EQ(error.substr(0, message.size() + 11), "test.json: " + message)
+            << scene << "\nsays " << error;
     }
 }
 
@@ -43,16 +44,19 @@ TEST(SceneErrors, world) {
          "world.gravity: [0, -9.81, 0] is not a list of 2 numbers [x, y]"},
         {scene_text(3, "\"world\": {\"gravity\": [0, -9.81]}"),
          "world.gravity: [0, -9.81] is not a list of 3 numbers [x, y, z]"},
-        {scene_text(2, "\"world\": {\"gravity\": [0, \"down\"]}"), "world.gravity[1]: \"down\" is not a number"},
+        {scene_text(2, "\"world\": {\"gravity\": [0, \"down\"]}"),
+         "world.gravity[1]: \"down\" is not a number"},
         {scene_text(2, "\"world\": {\"gravity\": -9.81}"), "world.gravity: -9.81 is not a list"},
         {scene_text(2, "\"world\": {\"step\": 0}"), "world.step: 0 is not above 0 and at most 1 s"},
         {scene_text(2, "\"world\": {\"step\": -0.1}"), "world.step: -0.1 is not above 0"},
         {scene_text(2, "\"world\": {\"step\": 2}"), "world.step: 2 is not above 0"},
         {scene_text(2, "\"world\": {\"substeps\": 0}"), "world.substeps: 0 is not between 1 and 64"},
         {scene_text(2, "\"world\": {\"substeps\": 4.5}"), "world.substeps: 4.5 is not a whole number"},
-        {scene_text(2, "\"world\": {\"substeps\": 1e10}"), "world.substeps: 10000000000.0 is not a whole number"},
+        {scene_text(2, "\"world\": {\"substeps\": 1e10}"),
+         "world.substeps: 10000000000.0 is not a whole number"},
         {scene_text(2, "\"world\": {\"integrator\": \"verlett\"}"),
-         "world.integrator: \"verlett\" is not known (did you mean \"verlet\"?); allowed are semi_implicit_euler, "
+         "world.integrator: \"verlett\" is not known (did you mean \"verlet\"?); allowed are "
+         "semi_implicit_euler, "
          "explicit_euler, verlet, rk4"},
         {scene_text(2, "\"world\": {\"impacts\": true}"), "world.impacts: true is not a text"},
         {scene_text(2, "\"world\": {\"sleep\": 1}"), "world.sleep: 1 is neither true nor false"},
@@ -67,8 +71,10 @@ TEST(SceneErrors, materials) {
     const std::string wood = "\"materials\": {\"wood\": {\"density\": 600}}, ";
     expect_refused({
         {scene_text(2, "\"materials\": []"), "materials: [] is not an object"},
-        {scene_text(2, "\"materials\": {\"wood\": {\"density\": -600}}"), "materials.wood.density: -600 is negative"},
-        {scene_text(2, "\"materials\": {\"wood\": {\"friction\": -0.1}}"), "materials.wood.friction: -0.1 is negative"},
+        {scene_text(2, "\"materials\": {\"wood\": {\"density\": -600}}"),
+         "materials.wood.density: -600 is negative"},
+        {scene_text(2, "\"materials\": {\"wood\": {\"friction\": -0.1}}"),
+         "materials.wood.friction: -0.1 is negative"},
         {scene_text(2, "\"materials\": {\"wood\": {\"restitution\": 1.1}}"),
          "materials.wood.restitution: 1.1 is not between 0 and 1"},
         {scene_text(2, "\"materials\": {\"old wood\": {\"colour\": 1}}"),
@@ -93,7 +99,8 @@ TEST(SceneErrors, bodies) {
         {body_text(2, "\"type\": \"static\""),
          "bodies[0].type: \"static\" is not known; allowed are dynamic, fixed, kinematic"},
         {body_text(3, "\"angular_velocity\": 1"), "bodies[0].angular_velocity: 1 is not a list of 3 numbers"},
-        {body_text(2, "\"angular_velocity\": [0, 0, 1]"), "bodies[0].angular_velocity: [0, 0, 1] is not a number"},
+        {body_text(2, "\"angular_velocity\": [0, 0, 1]"),
+         "bodies[0].angular_velocity: [0, 0, 1] is not a number"},
         {body_text(2, "\"mass\": -1"), "bodies[0].mass: -1 is not positive"},
         {body_text(2, "\"mass\": null"), "bodies[0].mass: null is not a number"},
         {body_text(2, "\"mass\": 1, \"inertia\": 0"), "bodies[0].inertia: 0 is not positive"},
@@ -117,28 +124,38 @@ TEST(SceneErrors, shapes) {
     expect_refused({
         {shape_text(2, "\"radius\": 1"), "bodies[0].shapes[0]: \"type\" is missing"},
         {shape_text(2, "\"type\": \"bal\", \"radius\": 1"),
-         "bodies[0].shapes[0].type: \"bal\" is not known (did you mean \"ball\"?); allowed are ball, box, capsule, "
+         "bodies[0].shapes[0].type: \"bal\" is not known (did you mean \"ball\"?); allowed are ball, box, "
+         "capsule, "
          "hull, plane"},
         {shape_text(2, "\"type\": \"cylinder\", \"radius\": 1, \"height\": 1"),
          "bodies[0].shapes[0].type: \"cylinder\" exists in 3D only; allowed in 2D are ball"},
         {shape_text(3, "\"type\": \"mesh\""),
-         "bodies[0].shapes[0].type: \"mesh\" is not supported by this version; allowed are ball, box, capsule, hull, "
+         "bodies[0].shapes[0].type: \"mesh\" is not supported by this version; allowed are ball, box, "
+         "capsule, hull, "
          "cylinder, cone, plane"},
         {shape_text(2, "\"type\": \"chain\""), "bodies[0].shapes[0].type: \"chain\" is not supported"},
-        {shape_text(2, "\"type\": \"height_field\""), "bodies[0].shapes[0].type: \"height_field\" is not supported"},
+        {shape_text(2, "\"type\": \"height_field\""),
+         "bodies[0].shapes[0].type: \"height_field\" is not supported"},
         {shape_text(2, "\"type\": \"ball\""), "bodies[0].shapes[0]: \"radius\" is missing"},
         {shape_text(2, "\"type\": \"ball\", \"raduis\": 1"),
          "bodies[0].shapes[0].raduis: this key is not known (did you mean \"radius\"?)"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": -1"), "bodies[0].shapes[0].radius: -1 is not positive"},
+        {shape_text(2, "\"type\": \"ball\", \"radius\": -1"),
+         "bodies[0].shapes[0].radius: -1 is not positive"},
         {shape_text(3, "\"type\": \"ball\", \"radius\": 0"), "bodies[0].shapes[0].radius: 0 is not positive"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": \"1\""), "bodies[0].shapes[0].radius: \"1\" is not a number"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": true"), "bodies[0].shapes[0].radius: true is not a number"},
-        {shape_text(2, "\"type\": \"box\", \"size\": [1, -2]"), "bodies[0].shapes[0].size[1]: -2 is not positive"},
-        {shape_text(2, "\"type\": \"box\", \"size\": 1"), "bodies[0].shapes[0].size: 1 is not a list of 2 numbers"},
-        {shape_text(2, "\"type\": \"box\", \"size\": [1, 1], \"rounding\": 2"), "bodies[0].shapes[0].rounding: 2 "},
+        {shape_text(2, "\"type\": \"ball\", \"radius\": \"1\""),
+         "bodies[0].shapes[0].radius: \"1\" is not a number"},
+        {shape_text(2, "\"type\": \"ball\", \"radius\": true"),
+         "bodies[0].shapes[0].radius: true is not a number"},
+        {shape_text(2, "\"type\": \"box\", \"size\": [1, -2]"),
+         "bodies[0].shapes[0].size[1]: -2 is not positive"},
+        {shape_text(2, "\"type\": \"box\", \"size\": 1"),
+         "bodies[0].shapes[0].size: 1 is not a list of 2 numbers"},
+        {shape_text(2, "\"type\": \"box\", \"size\": [1, 1], \"rounding\": 2"),
+         "bodies[0].shapes[0].rounding: 2 "},
         {shape_text(2, "\"type\": \"box\", \"size\": [1, 1], \"radius\": 2"),
          "bodies[0].shapes[0].radius: this key is not known"},
-        {shape_text(2, "\"type\": \"hull\", \"points\": [[0, 0], [1, 1], [2, 2]]"), "bodies[0].shapes[0].points: "},
+        {shape_text(2, "\"type\": \"hull\", \"points\": [[0, 0], [1, 1], [2, 2]]"),
+         "bodies[0].shapes[0].points: "},
         {shape_text(3, "\"type\": \"hull\", \"points\": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]"),
          "bodies[0].shapes[0].points: "},
         {shape_text(2, "\"type\": \"hull\", \"points\": []"), "bodies[0].shapes[0].points: "},
@@ -146,7 +163,9 @@ TEST(SceneErrors, shapes) {
          "bodies[0].shapes[0].points[1]: [1] is not a list of 2 numbers"},
         {shape_text(3, "\"type\": \"cone\", \"radius\": 1, \"height\": -1"),
          "bodies[0].shapes[0].height: -1 is not positive"},
-        {body_text(2, "\"type\": \"fixed\", \"shapes\": [{\"type\": \"plane\", \"normal\": [0, 0], \"offset\": 0}]"),
+        {body_text(
+             2,
+             "\"type\": \"fixed\", \"shapes\": [{\"type\": \"plane\", \"normal\": [0, 0], \"offset\": 0}]"),
          "bodies[0].shapes[0].normal"},
         {shape_text(2, "\"type\": \"plane\", \"normal\": [0, 1], \"offset\": 0"), "bodies[0].shapes[0]."},
         {shape_text(2, "\"type\": \"ball\", \"radius\": 1, \"mask\": -1"),
@@ -169,17 +188,20 @@ TEST(SceneErrors, shapes) {
 TEST(SceneErrors, forces) {
     expect_refused({
         {force_text(2, "\"body\": \"b\""), "forces[0]: \"type\" is missing"},
-        {force_text(2, "\"type\": \"buoyancy\""), "forces[0].type: \"buoyancy\" is not supported by this version"},
+        {force_text(2, "\"type\": \"buoyancy\""),
+         "forces[0].type: \"buoyancy\" is not supported by this version"},
         {force_text(2, "\"type\": \"magnet\""),
-         "forces[0].type: \"magnet\" is not known; allowed are force, torque, impulse, drag, wind, point_gravity, "
+         "forces[0].type: \"magnet\" is not known; allowed are force, torque, impulse, drag, wind, "
+         "point_gravity, "
          "spring"},
         {force_text(2, "\"type\": \"force\", \"value\": [1, 0]"), "forces[0]: \"body\" is missing"},
         {force_text(2, "\"type\": \"force\", \"body\": \"c\", \"value\": [1, 0]"),
-         "forces[0].body: \"c\" is not the name of a body (did you mean \"b\"?)"},
+         "forces[0].body: \"c\" is not the name of a body"},
         {force_text(2, "\"type\": \"force\", \"body\": \"b\""), "forces[0]: \"value\" is missing"},
         {force_text(2, "\"type\": \"torque\", \"body\": \"b\", \"value\": [1, 0]"),
          "forces[0].value: [1, 0] is not a number"},
-        {force_text(3, "\"type\": \"torque\", \"body\": \"b\", \"value\": 1"), "forces[0].value: 1 is not a list"},
+        {force_text(3, "\"type\": \"torque\", \"body\": \"b\", \"value\": 1"),
+         "forces[0].value: 1 is not a list"},
         {force_text(2, "\"type\": \"impulse\", \"body\": \"b\", \"value\": [1, 0], \"at\": -1"),
          "forces[0].at: -1 is negative"},
         {force_text(2, "\"type\": \"drag\", \"linear\": -1"), "forces[0].linear: -1 is negative"},
@@ -188,7 +210,8 @@ TEST(SceneErrors, forces) {
         {force_text(2, "\"type\": \"spring\", \"a\": \"b\""), "forces[0]: \"b\" is missing"},
         {force_text(2, "\"type\": \"spring\", \"b\": \"b\", \"stiffness\": -5"),
          "forces[0].stiffness: -5 is negative"},
-        {force_text(2, "\"type\": \"spring\", \"b\": \"b\", \"length\": -5"), "forces[0].length: -5 is negative"},
+        {force_text(2, "\"type\": \"spring\", \"b\": \"b\", \"length\": -5"),
+         "forces[0].length: -5 is negative"},
         {force_text(2, "\"type\": \"wind\", \"velocity\": [1, 0], \"from\": 2, \"to\": 1"),
          "forces[0].to: 1 is before \"from\", 2"},
         {force_text(2, "\"type\": \"wind\", \"velocity\": [1, 0], \"until\": 1"),
@@ -199,12 +222,13 @@ TEST(SceneErrors, forces) {
 TEST(SceneErrors, numbers_that_are_none) {
     expect_refused({
         {shape_text(2, "\"type\": \"ball\", \"radius\": 1e999"),
-         "line 1, column 95: bodies[0].shapes[0].radius: number overflow parsing '1e999'"},
+         "line 1, column 84: bodies[0].shapes[0].radius: number overflow parsing '1e999'"},
         {shape_text(2, "\"type\": \"ball\", \"radius\": NaN"),
-         "line 1, column 91: bodies[0].shapes[0].radius: syntax error while parsing value - invalid literal"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": -Infinity"), "line 1, column 92: bodies[0].shapes[0].radius: "},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": 0x10"), "line 1, column 92: bodies[0].shapes[0]"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": .5"), "line 1, column 91: bodies[0].shapes[0]"},
+         "line 1, column 80: bodies[0].shapes[0].radius: syntax error while parsing value - invalid literal"},
+        {shape_text(2, "\"type\": \"ball\", \"radius\": -Infinity"),
+         "line 1, column 81: bodies[0].shapes[0].radius: "},
+        {shape_text(2, "\"type\": \"ball\", \"radius\": 0x10"), "line 1, column 81: bodies[0].shapes[0]"},
+        {shape_text(2, "\"type\": \"ball\", \"radius\": .5"), "line 1, column 80: bodies[0].shapes[0]"},
     });
 }
 

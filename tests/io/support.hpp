@@ -60,8 +60,8 @@ inline void parse_and_build(const std::string& text) {
 
 /// A scene with these entries beside `carom` and `dimension`.
 inline std::string scene_text(int dimension, const std::string& entries) {
-    return "{\"carom\": 1, \"dimension\": " + std::to_string(dimension) + (entries.empty() ? "" : ", ") + entries +
-           "}";
+    return "{\"carom\": 1, \"dimension\": " + std::to_string(dimension) + (entries.empty() ? "" : ", ") +
+           entries + "}";
 }
 
 /// A scene with one body of these entries.

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "carom/carom.hpp"
@@ -11,6 +14,9 @@
 namespace carom::test {
 
 constexpr double frame_time = 1.0 / 60;
+
+/// What a typed test suite is written over, to run in the plane and in space.
+using BothDimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 
 /// A vector of either dimension: z is left out in the plane.
 template <int D>

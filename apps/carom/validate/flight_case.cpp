@@ -28,8 +28,11 @@ Result throw_ball(const Method& method, int steps) {
     for (int i = 0; i < steps; ++i) world.step(1.0 / steps);
 
     const Vec<D> truth = in_plane<D>(10, 10 - 0.5 * g), place = world.position(id);
-    return {fmt::format("{}D, {}, h = 1/{}: height at 1 s (m)", D, method.name, steps), truth.y, place.y,
-            length(place - truth), {method.bound * g / steps + 1e-6, method.gold}};
+    return {fmt::format("{}D, {}, h = 1/{}: height at 1 s (m)", D, method.name, steps),
+            truth.y,
+            place.y,
+            length(place - truth),
+            {method.bound * g / steps + 1e-6, method.gold}};
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ void add_sticking(std::vector<Result>& results) {
     Slope<D> slides(angle, friction);
     slides.run(2);
     const double truth = 2 * g * (std::sin(angle) - friction * std::cos(angle));
-    results.push_back(relative(fmt::format("{}D, 0.1° over the friction angle: distance at 2 s (m)", D), truth,
-                               slides.distance(), {5e-3, 1e-4}));
+    results.push_back(relative(fmt::format("{}D, 0.1° over the friction angle: distance at 2 s (m)", D),
+                               truth, slides.distance(), {5e-3, 1e-4}));
 }
 
 }  // namespace

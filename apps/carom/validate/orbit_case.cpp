@@ -54,8 +54,9 @@ void add_orbits(std::vector<Result>& results, const Method& method) {
     for (const int steps : {200, 1000}) {
         const Drift drift = orbit<D>(method.integrator, steps);
         const std::string what = fmt::format("{}D, {}, {} steps a round", D, method.name, steps);
-        results.push_back(relative(what + ": max |ΔE/E|", steps == 200 ? method.energy_200 : method.energy_1000,
-                                   drift.energy, {1e-2, 1e-3}));
+        results.push_back(relative(what + ": max |ΔE/E|",
+                                   steps == 200 ? method.energy_200 : method.energy_1000, drift.energy,
+                                   {1e-2, 1e-3}));
         if (method.keeps_momentum)
             results.push_back(absolute(what + ": max |ΔL/L|", 0, drift.momentum, {1e-12, 1e-13}));
     }

@@ -88,10 +88,10 @@ void add_roll_down(std::vector<Result>& results, const Round<D>& round, double a
         run_until(world, 2);
         const bool slips = friction < needed;
         const double truth = slips ? g * (std::sin(slope) - friction * std::cos(slope)) : acceleration;
-        const std::string what =
-            fmt::format("{}D, {}, friction {:.4f}{}: acceleration from ", D, round.name, friction, slips ? " (slips)" : "");
-        results.push_back(relative(what + "way at 2 s (m/s²)", truth,
-                                   dot(world.position(id) - start, down) / 2, bounds));
+        const std::string what = fmt::format("{}D, {}, friction {:.4f}{}: acceleration from ", D, round.name,
+                                             friction, slips ? " (slips)" : "");
+        results.push_back(
+            relative(what + "way at 2 s (m/s²)", truth, dot(world.position(id) - start, down) / 2, bounds));
         results.push_back(
             relative(what + "speed at 2 s (m/s²)", truth, dot(world.velocity(id), down) / 2, bounds));
     }

@@ -10,10 +10,10 @@
 /// descends along x and bodies roll about the axis out of the plane.
 namespace carom::app {
 
-constexpr double g = 9.81;             // m/s², the world's default
-constexpr double frame = 1.0 / 60;     // s, the step of a game
+constexpr double g = 9.81;          // m/s², the world's default
+constexpr double frame = 1.0 / 60;  // s, the step of a game
 constexpr double pi = std::numbers::pi;
-constexpr double degree = pi / 180;    // rad
+constexpr double degree = pi / 180;  // rad
 
 template <int D>
 Vec<D> in_plane(double x, double y) {

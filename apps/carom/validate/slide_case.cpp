@@ -66,14 +66,16 @@ void add_space_slides(std::vector<Result>& results, const Known& known) {
     }
     const std::string what = fmt::format("3D, friction {}, every 15°: ", known.friction);
     results.push_back(relative(what + "way, worst (m)", known.distance, worst, bounds));
-    results.push_back(absolute(what + "spread of the way, relative", 0, (most - least) / known.distance, {5e-3, 1e-6}));
+    results.push_back(
+        absolute(what + "spread of the way, relative", 0, (most - least) / known.distance, {5e-3, 1e-6}));
     results.push_back(absolute(what + "way aside, relative", 0, aside / known.distance, {5e-3, 1e-6}));
 }
 
 }  // namespace
 
 std::vector<Result> slide_to_rest() {
-    constexpr Known all[] = {{0.1, 12.742100}, {0.2, 6.371050}, {0.3, 4.247367}, {0.5, 2.548420}, {0.8, 1.592762}};
+    constexpr Known all[] = {
+        {0.1, 12.742100}, {0.2, 6.371050}, {0.3, 4.247367}, {0.5, 2.548420}, {0.8, 1.592762}};
     std::vector<Result> results;
     for (const Known& known : all) add_plane_slides(results, known);
     for (const Known& known : all) add_space_slides(results, known);

@@ -32,8 +32,7 @@ class Spinner {
     void step(double h) {
         world_.step(h);
         worst_energy_ = std::max(worst_energy_, std::fabs(energy() / energy_ - 1));
-        worst_momentum_ =
-            std::max(worst_momentum_, length(momentum() - momentum_) / length(momentum_));
+        worst_momentum_ = std::max(worst_momentum_, length(momentum() - momentum_) / length(momentum_));
     }
     void run_until(double end, double h) {
         while (time() < end - 0.5 * h) step(h);
@@ -110,7 +109,8 @@ void add_symmetric_top(std::vector<Result>& results, const Top& top) {
         fmt::format("3D, I = ({:g}, {:g}, {:g}): ", top.moments.x, top.moments.y, top.moments.z);
     constexpr Bounds bounds{1e-2, 1e-4}, drift{1e-2, 1e-6};
     results.push_back(relative(what + "body precession (rad/s)", top.body_rate, in_body.total() / t, bounds));
-    results.push_back(relative(what + "space precession (rad/s)", top.space_rate, in_space.total() / t, bounds));
+    results.push_back(
+        relative(what + "space precession (rad/s)", top.space_rate, in_space.total() / t, bounds));
     results.push_back({what + "half-angle of the axis about L (deg), worst", top.half_angle,
                        half_angle() / degree, worst_angle, bounds});
     results.push_back(absolute(what + "turned away from the true place after 10 periods (rad)", 0,
@@ -123,7 +123,6 @@ constexpr Bounds flip_bounds{1e-2, 1e-4}, energy_bounds{1e-2, 1e-5};
 
 /// Round-off: a unit of rounding a step.
 Bounds momentum_bounds(double steps) { return {1e-2, steps * std::numeric_limits<double>::epsilon()}; }
-
 
 /// A body that spins about its middle axis turns over; that is when the third component of its spin, which
 /// grew in the meantime, comes back to zero.
@@ -169,8 +168,8 @@ void add_box(std::vector<Result>& results, double h, std::string_view name) {
     add_spin(5, {0.280861941, -2.432266940, 2.750101480});
     body.run_until(100, h);
     results.push_back(absolute(what + "max |ΔE/E| in 100 s", 0, body.worst_energy(), energy_bounds));
-    results.push_back(absolute(what + "max |ΔL|/|L| in 100 s", 0, body.worst_momentum(),
-                               momentum_bounds(100 / h)));
+    results.push_back(
+        absolute(what + "max |ΔL|/|L| in 100 s", 0, body.worst_momentum(), momentum_bounds(100 / h)));
 }
 
 }  // namespace

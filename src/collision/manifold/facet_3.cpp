@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "collision/manifold/nearest_3.hpp"
 
@@ -28,9 +30,10 @@ void set_face(Facet3& facet, const Vec3& normal, Facet3::Form form) {
 
 void box_facet(const Shape<3>& box, const Vec3& direction, Facet3& facet) {
     const Vec3 local = unrotate(box.rotation, direction);
+    constexpr double tie = 1e-4;  // a box that stands on its edge shows the same face in every step
     int axis = 0;
     for (int i = 1; i < 3; ++i) {
-        if (std::fabs(local[i]) > std::fabs(local[axis])) axis = i;
+        if (std::fabs(local[i]) > std::fabs(local[axis]) + tie) axis = i;
     }
     const double sign = local[axis] < 0 ? -1.0 : 1.0;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -82,19 +85,19 @@ void hull_facet(const Shape<3>& hull, const Vec3& direction, Facet3& facet) {
 /// The polygon of a disk. Its first corner is the one that lies furthest along `direction`, so that a tilted disk
 /// touches with its true lowest point; a disk that lies flat keeps its corners where they are in the body.
 void disk_facet(const Shape<3>& shape, const Vec3& normal, const Vec3& direction, Facet3& facet) {
-    constexpr double c1 = 0.92387953251128674, c2 = 0.70710678118654752, c3 = 0.38268343236508977;
-    constexpr std::array<double, disk_corners> cosine{1,  c1,  c2,  c3,  0, -c3, -c2, -c1,
-                                                      -1, -c1, -c2, -c3, 0, c3,  c2,  c1};
+    // Cosines of the first quarter in steps of a sixteenth of π.
+    constexpr std::array<double, disk_corners / 4 + 1> quarter{1, 0.98078528040323043, 0.92387953251128674, 0.83146961230254524, 0.70710678118654757, 0.55557023301960229, 0.38268343236508984, 0.19509032201612833, 0};
     constexpr double flat = 2e-5;
     const Vec3 slope = direction - dot(direction, normal) * normal;
     const Vec3 u = length(slope) > flat ? normalized(slope) : any_perpendicular(shape.b);
-    const Vec3 v = cross(normal, u);
     const Vec3 center = shape.a + shape.half_height * normal;
     facet.corners.clear();
     facet.corners.reserve(disk_corners);
+    Vec3 x = shape.radius * u, y = shape.radius * cross(normal, u);
     for (std::uint32_t i = 0; i < disk_corners; ++i) {
-        const double sine = cosine[(i + 3 * disk_corners / 4) % disk_corners];
-        facet.corners.push_back({center + shape.radius * (cosine[i] * u + sine * v), i});
+        const std::uint32_t step = i % (disk_corners / 4);
+        if (i > 0 && step == 0) std::tie(x, y) = std::pair{y, -x};
+        facet.corners.push_back({center + quarter[step] * x + quarter[disk_corners / 4 - step] * y, i});
     }
     set_face(facet, normal, Facet3::Form::disk);
 }

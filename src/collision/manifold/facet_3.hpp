@@ -28,9 +28,9 @@ struct Facet3 {
     Form form = Form::edge;
 };
 
-/// Corners of the polygon that stands for a disk. Every fourth is one of the four that support a disk which
-/// rests entirely on a face.
-constexpr int disk_corners = 16;
+/// Corners of the polygon that stands for a disk, which it fits within half a percent of the radius. Every eighth
+/// is one of the four that support a disk which rests entirely on a face.
+constexpr int disk_corners = 32;
 
 /// Sets `facet` to the face or edge of the shape's core that looks most along the unit vector `direction`, among
 /// those that reach furthest along it. Not for balls.

@@ -1,7 +1,6 @@
 #include "collision/manifold/outline_2.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace carom::detail {

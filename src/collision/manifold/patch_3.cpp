@@ -102,7 +102,7 @@ void clip(const Facet3& base, bool base_is_b, const Facet3& flat, double snap, C
 
 /// Does the disk lie over the face, but for what the polygons inscribed in them cut off?
 bool lies_over(const Facet3& disk, const Facet3& base) {
-    const double slack = 0.02 * disk.extent;
+    const double slack = 0.005 * disk.extent;
     for (std::size_t i = 0; i < base.corners.size(); ++i) {
         const Side side = side_of(base, i);
         for (std::size_t k = 0; k < disk.corners.size(); k += disk_corners / 4) {

@@ -37,9 +37,10 @@ Nearest3 widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Trans
 /// Test between Convex Polyhedra, 2013).
 bool arcs_cross(const Vec3& edge_a, const Vec3& left_a, const Vec3& right_a, const Vec3& edge_b, const Vec3& left_b,
                 const Vec3& right_b) {
-    const double left_of_b = dot(left_b, edge_a), right_of_b = dot(right_b, edge_a);
-    const double left_of_a = dot(left_a, edge_b), right_of_a = dot(right_a, edge_b);
-    return left_of_b * right_of_b < 0 && left_of_a * right_of_a < 0 && left_of_b * right_of_a < 0;
+    const double left_of_b = dot(left_b, edge_a);
+    if (left_of_b * dot(right_b, edge_a) >= 0) return false;
+    const double right_of_a = dot(right_a, edge_b);
+    return dot(left_a, edge_b) * right_of_a < 0 && left_of_b * right_of_a < 0;
 }
 
 /// The widest gap across an edge of a and one of b, in b's frame.

@@ -12,58 +12,62 @@ bool is_revolved(const Shape<3>& shape) {
     return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
 }
 
-/// Keeps the direction of the widest gap. Only the half of the directions that point from a to b can have it.
+/// Keeps the direction of the widest gap of those that are offered.
 class Candidates {
   public:
     explicit Candidates(const Pair3& pair) : pair_(pair) {}
 
-    void offer(const Vec3& normal) {
+    void offer(const Vec3& normal, bool of_face = false) {
         const double gap = gap_along(pair_, normal).distance;
-        if (gap > widest_.distance) widest_ = {normal, gap};
+        if (gap <= widest_.distance) return;
+        widest_ = {normal, gap};
+        of_face_ = of_face;
     }
-    void offer_both(const Vec3& axis) {
+    void offer_both(const Vec3& axis, bool of_face = false) {
         if (length_squared(axis) <= 1e-12) return;
-        offer(normalized(axis));
-        offer(-normalized(axis));
+        offer(normalized(axis), of_face);
+        offer(-normalized(axis), of_face);
     }
     const Gap3& widest() const { return widest_; }
+    bool is_of_face() const { return of_face_; }
 
   private:
     const Pair3& pair_;
     Gap3 widest_;
+    bool of_face_ = false;
 };
 
 /// Offers the normals of the flat faces of one of the shapes; `sign` is +1 for a, −1 for b.
 void offer_faces(Candidates& candidates, const Shape<3>& shape, const Rotation3& turn, double sign) {
     if (shape.kind == ShapeKind::cone) {
-        candidates.offer(-sign * rotate(turn, shape.b));
+        candidates.offer(-sign * rotate(turn, shape.b), true);
     } else if (shape.kind == ShapeKind::cylinder) {
-        candidates.offer_both(rotate(turn, shape.b));
+        candidates.offer_both(rotate(turn, shape.b), true);
     } else if (shape.core) {
-        for (const Vec3& normal : shape.core->normals) candidates.offer(sign * rotate(turn, normal));
+        for (const Vec3& normal : shape.core->normals) candidates.offer(sign * rotate(turn, normal), true);
     }
 }
 
 /// Directions in which such shapes often rest on each other: along flat faces, across two axes, and straight away
 /// from an axis.
-Gap3 likely_gap(const Pair3& pair) {
+Candidates likely_directions(const Pair3& pair) {
     Candidates candidates(pair);
     const Rotation3& turn = pair.b_in_a.rotation;
     offer_faces(candidates, pair.a, {}, 1);
     offer_faces(candidates, pair.b, turn, -1);
     const Vec3 axis_b = rotate(turn, pair.b.b), axis_a = is_revolved(pair.a) ? pair.a.b : pair.a.b - pair.a.a;
     const Vec3 apart = apply(pair.b_in_a, pair.b.a) - pair.a.a;
-    if (pair.a.kind != ShapeKind::box && pair.a.kind != ShapeKind::hull) candidates.offer_both(cross(axis_a, axis_b));
+    if (!pair.a.core) candidates.offer_both(cross(axis_a, axis_b));
     candidates.offer_both(apart - dot(apart, axis_b) * axis_b);
-    return candidates.widest();
+    return candidates;
 }
 
-/// Sharpens the direction of the widest gap of cores that overlap or all but touch. With b moved out along the
-/// direction until the cores are `clearance` apart, their closest points give a better one: the error shrinks each
-/// time by about clearance over radius of curvature. Where flat faces meet, the first step is exact.
-Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance) {
+/// Sharpens the direction of the widest gap. With b moved along the direction until the cores are `clearance` apart,
+/// their closest points give a better one: where they overlap, the error shrinks each time by about clearance over
+/// radius of curvature. Where flat faces meet, the first step is exact.
+Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance, int most_steps) {
     Nearest3 best = gap_along(pair, start);
-    for (int i = 0; i < 16; ++i) {
+    for (int i = 0; i < most_steps; ++i) {
         const Vec3 shift = (clearance - best.distance) * best.normal;
         const Transform3 moved{pair.b_in_a.position + shift, pair.b_in_a.rotation};
         const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, moved);
@@ -78,13 +82,21 @@ Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance) {
     return best;
 }
 
-}  // namespace
+/// Cheaply, to within a hundredth of the depth.
+Nearest3 nearly(const Pair3& pair, const Search3& search, const Candidates& likely, double extent) {
+    const double tolerance = 1e-2 * std::fabs(likely.widest().distance) + 1e-5 * extent;
+    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely.widest(), tolerance);
+    if (widest.distance > search.limit) return gap_along(pair, widest.normal);
+    if (likely.is_of_face() && widest.distance == likely.widest().distance) {
+        Nearest3 nearest = gap_along(pair, widest.normal);
+        nearest.certain = false;
+        return nearest;
+    }
+    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 2);
+}
 
-Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
-    const double extent = is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
-    const Gap3 likely = likely_gap(pair);
-    if (likely.distance > search.limit) return gap_along(pair, likely.normal);
-
+/// As well as rounding allows.
+Nearest3 exactly(const Pair3& pair, const Gap3& likely, double extent) {
     const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, pair.b_in_a);
     if (!found.overlap && found.distance <= likely.distance + 1e-9 * extent)
         return {likely.normal, likely.distance, found.on_a, found.on_b};
@@ -96,7 +108,16 @@ Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
         if (gap > guess.distance) guess = {found.axis, gap};
     }
     const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, guess, 1e-7 * extent);
-    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent));
+    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 16);
+}
+
+}  // namespace
+
+Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
+    const double extent = is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
+    const Candidates likely = likely_directions(pair);
+    if (likely.widest().distance > search.limit) return gap_along(pair, likely.widest().normal);
+    return search.steady ? nearly(pair, search, likely, extent) : exactly(pair, likely.widest(), extent);
 }
 
 }  // namespace carom::detail

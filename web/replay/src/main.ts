@@ -40,6 +40,7 @@ class Page {
     private readonly drawing = new Meter();
     private contacts: Promise<Contacts> | null = null;
     private contactsShown = false;
+    private contactsDrawn = 0;
     private stale = true;
     private drawn = 0;
     private selected = -1;
@@ -82,6 +83,11 @@ class Page {
         this.player.seek(this.options.time);
         this.showPanel(this.options.panel ?? false);
         new ResizeObserver(() => this.resize()).observe(byId("stage"));
+        new ResizeObserver(([dock]) => {
+            document.body.style.setProperty("--dock", `${dock.borderBoxSize[0].blockSize}px`);
+            this.scene.setInsets(this.insets());
+            this.stale = true;
+        }).observe(byId("dock"));
         this.resize();
         this.scene.setView(this.options.view);
         if (this.options.select !== null) this.select(this.recording.indexOf(this.options.select));
@@ -185,6 +191,7 @@ class Page {
         const contacts = on ? await this.contacts : null;
         if (this.contactsShown !== on) return; // toggled again meanwhile
         this.scene.setContacts(contacts);
+        this.contactsDrawn = contacts?.a.length ?? 0;
         this.stale = true;
     }
 
@@ -203,7 +210,11 @@ class Page {
             select: (name: string | null) => this.select(name === null ? -1 : this.recording.indexOf(name)),
             selected: () => (this.selected < 0 ? null : this.recording.label(this.selected)),
             state: (name: string) => this.recording.state(this.recording.indexOf(name), this.player.time),
-            pick: (x: number, y: number) => this.scene.pick(x, y),
+            body: (name: string) => this.recording.bodies[this.recording.indexOf(name)],
+            pick: (x: number, y: number) => {
+                const body = this.scene.pick(x, y);
+                return body < 0 ? null : this.recording.label(body);
+            },
             contacts: (on: boolean) => this.showContacts(on),
             draw: () => this.draw(),
             stats: () => ({
@@ -213,6 +224,7 @@ class Page {
                 decodeMs: this.decodeMs,
                 updateMs: this.updating.value,
                 drawMs: this.drawing.value,
+                contacts: this.contactsDrawn,
                 ...this.scene.cost(),
             }),
         };
