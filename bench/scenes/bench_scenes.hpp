@@ -19,7 +19,7 @@ struct BenchWorld {
     std::function<void(World<D>&, int step)> before_step{};
 };
 
-/// A scene that engines are compared by. docs/benchmarks.md says what is in each.
+/// A scene that engines are compared by. docs/command-line.md says what is in each.
 struct BenchScene {
     std::string_view name;
     int steps;  ///< the first of them untimed, unless `first_step_timed`

@@ -10,6 +10,7 @@ namespace carom {
 /// was made is as it was before the call.
 class Error : public std::runtime_error {
   public:
+    /// `message` is what `what()` will say.
     explicit Error(const std::string& message) : std::runtime_error(message) {}
 };
 

@@ -103,6 +103,7 @@ struct WorldState;
 template <int D>
 class World {
   public:
+    /// An empty world. Throws `Error` for settings that cannot be simulated.
     explicit World(const WorldDefinition<D>& definition = {});
     ~World();
     World(World&&) noexcept;
@@ -194,7 +195,9 @@ class World {
     /// and disabled, and the rest goes on.
     std::span<const BodyId<D>> quarantined() const;
 
+    /// How many of everything there are.
     Counts counts() const;
+    /// Energy of all dynamic bodies, J.
     Energy energy() const;
     /// Kinetic and gravitational energy of one body.
     Energy energy(BodyId<D> body) const;

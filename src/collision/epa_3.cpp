@@ -13,7 +13,8 @@ namespace {
 constexpr int most_vertices = 256;
 constexpr std::uint32_t none = 0xffffffffu;
 
-/// A triangle of the polytope: counter-clockwise from outside, `neighbors[k]` across the edge from corner k to k + 1.
+/// A triangle of the polytope: counter-clockwise from outside, `neighbors[k]` across the edge from corner k
+/// to k + 1.
 struct Triangle {
     std::array<std::uint32_t, 3> corners;
     std::array<std::uint32_t, 3> neighbors;
@@ -36,7 +37,7 @@ class Expansion {
         queue_.reserve(192);
     }
 
-    Gap3 run(double tolerance) {
+    Gap3 run(double tolerance, double share) {
         if (!begin()) return best_;
         while (vertices_.size() < most_vertices && !queue_.empty()) {
             const std::uint32_t nearest = take_nearest();
@@ -44,7 +45,7 @@ class Expansion {
             const Vec3 normal = triangles_[nearest].normal;
             const double offset = triangles_[nearest].offset;
             // The polytope lies within the difference: no direction has less depth than its nearest face.
-            if (-best_.distance - offset <= tolerance) break;
+            if (-best_.distance - offset <= tolerance + share * std::fabs(best_.distance)) break;
             const Vec3 vertex = extreme(normal);
             // Where nothing lies beyond, this is the surface itself, and the best over it is known.
             if (dot(normal, vertex) - offset > 1e-3 * tolerance && !grow(nearest, vertex)) break;
@@ -94,11 +95,14 @@ class Expansion {
     }
 
     /// The third corner: an extreme point off the line through the first two.
-    bool furthest_across(const std::array<Vec3, 6>& extremes, std::array<Vec3, 4>& corners, const Vec3& along) {
+    bool furthest_across(const std::array<Vec3, 6>& extremes, std::array<Vec3, 4>& corners,
+                         const Vec3& along) {
         const auto off_line = [&](const Vec3& p) { return length_squared(cross(along, p - corners[0])); };
-        corners[2] = *std::max_element(extremes.begin(), extremes.end(),
-                                       [&](const Vec3& p, const Vec3& q) { return off_line(p) < off_line(q); });
-        for (int i = 0; i < 3 && off_line(corners[2]) <= 1e-24 * length_squared(corners[1] - corners[0]); ++i) {
+        corners[2] = *std::max_element(extremes.begin(), extremes.end(), [&](const Vec3& p, const Vec3& q) {
+            return off_line(p) < off_line(q);
+        });
+        for (int i = 0; i < 3 && off_line(corners[2]) <= 1e-24 * length_squared(corners[1] - corners[0]);
+             ++i) {
             Vec3 axis{};
             axis[i] = 1;
             const Vec3 across = cross(along, axis);
@@ -166,9 +170,11 @@ class Expansion {
         for (std::uint32_t i = 0; i < count; ++i) {
             const HorizonEdge& edge = horizon_[i];
             if (edge.to != horizon_[(i + 1) % count].from) return false;  // torn by rounding
-            add({edge.from, edge.to, apex}, {edge.beyond, first + (i + 1) % count, first + (i + count - 1) % count});
+            add({edge.from, edge.to, apex},
+                {edge.beyond, first + (i + 1) % count, first + (i + count - 1) % count});
             for (std::uint32_t k = 0; k < 3; ++k) {
-                if (triangles_[edge.beyond].corners[k] == edge.to) triangles_[edge.beyond].neighbors[k] = first + i;
+                if (triangles_[edge.beyond].corners[k] == edge.to)
+                    triangles_[edge.beyond].neighbors[k] = first + i;
             }
         }
         return count >= 3;
@@ -187,8 +193,8 @@ class Expansion {
 }  // namespace
 
 Gap3 widest_gap(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a, const Gap3& guess,
-                double tolerance) {
-    return Expansion(a, b, b_in_a, guess).run(tolerance);
+                double tolerance, double share) {
+    return Expansion(a, b, b_in_a, guess).run(tolerance, share);
 }
 
 }  // namespace carom::detail

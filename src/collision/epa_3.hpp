@@ -10,11 +10,11 @@ struct Gap3 {
     double distance = -1e300;
 };
 
-/// The widest gap between two cores that overlap or nearly touch, by the expanding polytope algorithm (van den
-/// Bergen 2001): the polytope of extreme points of the difference a − b grows where its surface is nearest to the
-/// origin, until no direction can beat the best one seen by more than `tolerance`. A good first `guess` ends the
-/// search early. One of the cores must have a volume.
+/// The widest gap between two cores that overlap or nearly touch, by the expanding polytope algorithm (van
+/// den Bergen 2001): the polytope of extreme points of the difference a − b grows where its surface is
+/// nearest to the origin, until no direction can beat the best one seen by more than `tolerance` and `share`
+/// of its own gap. A good first `guess` ends the search early. One of the cores must have a volume.
 Gap3 widest_gap(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a, const Gap3& guess,
-                double tolerance);
+                double tolerance, double share);
 
 }  // namespace carom::detail

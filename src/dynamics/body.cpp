@@ -49,9 +49,11 @@ void turn<2>(BodyState<2>& state, const double& angle) {
     const Rotation2 after = normalized(exp_rotation<2>(angle) * before);
     state.rotation = after;
     if (std::fabs(angle) < pi) {
-        // Less than half a turn: the cut at ±π was crossed when the sine changed sign left of the origin.
-        const bool crossed = before.c < 0 && after.c < 0 && std::signbit(before.s) != std::signbit(after.s);
-        if (crossed) state.turns += angle > 0 ? 1 : -1;
+        // Less than half a turn: where the cut at ±π was crossed, the angle in (−π, π] jumped by more than π.
+        // ±(1 − cos) grows with that angle, and a difference of π is a difference of 2 of it.
+        const auto along = [](const Rotation2& q) { return q.s < 0 ? q.c - 1 : 1 - q.c; };
+        const double jump = along(before) - along(after);
+        if (std::fabs(jump) > 1 && (jump > 0) == (angle > 0)) state.turns += angle > 0 ? 1 : -1;
     } else {
         const double exact = whole_angle({{}, before, {}, 0, state.turns}) + angle;
         state.turns = static_cast<std::int32_t>(std::floor((exact - after.angle()) / (2 * pi) + 0.5));

@@ -27,6 +27,8 @@ struct ContactRecord {
     int count = 0;
     float friction = 0;
     float restitution = 0;
+    float roundness_a = 0,
+          roundness_b = 0;   ///< radius with which each shape rolls here, m; 0 for a corner or a face
     float rolling = 0;       ///< coefficient × radius, m: resisting torque a unit of normal force
     Vec<D, float> normal{};  ///< from a to b
     std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};

@@ -211,6 +211,7 @@ class Merger {
         for (std::size_t f = 0; f < faces; ++f) {
             const Vec3& normal = hull.normals[f];
             const double offset = hull.offsets[f];
+            if (normal == Vec3{}) return false;
             for (const Vec3& p : points_) {
                 if (dot(normal, p) - offset > 2 * tolerance_) return false;
             }

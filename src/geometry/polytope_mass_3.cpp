@@ -63,27 +63,19 @@ Integrals wedge(const Arc& arc, double length, double radius) {
                 outer_square(arc.axis) * (area * length * length * length / 12)};
 }
 
-/// Integrals over the directions d that are normal to a corner, a spherical polygon on the unit sphere: its
-/// area is 2π less the angles of the faces at the corner (Descartes); the rest are sums over its sides, which
-/// are arcs around the edges that end at the corner. With c the unit normal of an arc's plane, to the inside:
-/// ∫ d = ½ Σ angle c, and ∫ d dᵀ = ⅓ (area 1 + Σ ∫ d cᵀ) where along an arc ∫ d = (m + n) tan(angle/2)
-/// (Stokes; Arvo 1995, Applications of irradiance tensors to the simulation of non-Lambertian phenomena).
+/// Integrals over the directions d that are normal to a corner, a spherical polygon on the unit sphere whose
+/// sides are the arcs around the edges that end at the corner. Its area is 2π less the angles of the faces at
+/// the corner (Descartes), and ∫ d = ½ Σ angle c, with c the unit normal of an arc's plane, to the inside
+/// (Stokes).
 struct Directions {
     double area = 2 * pi;
     Vec3 first{};
-    Symmetric3<double> sides{};
 
-    void add_side(const Arc& arc, const Vec3& inward) {
-        first += 0.5 * arc.angle * inward;
-        // Half of the product: the sum over all sides is symmetric.
-        sides = sides + product(arc.m + arc.n, inward) * (0.5 * tan(0.5 * arc.angle));
-    }
-
-    /// The part of a ball around the corner that lies in these directions.
+    /// The part of a ball around the corner that lies in these directions, but for ∫ x xᵀ about the corner:
+    /// as all these parts make up one ball, that is added at once for all.
     Integrals sector(double radius) const {
-        const double r3 = radius * radius * radius, r4 = r3 * radius, r5 = r4 * radius;
-        const auto second = (diagonal(area, area, area) + sides) * (r5 / 15);
-        return {area * r3 / 3, r4 / 4 * first, second};
+        const double cube = radius * radius * radius;
+        return {area * cube / 3, cube * radius / 4 * first, {}};
     }
 };
 
@@ -124,10 +116,12 @@ MassProperties3 polytope_mass(const Polyhedron& core, double radius) {
         const Vec3 along = normalized(b - a);
         const Arc arc{m, n, along, atan2(dot(cross(m, n), along), dot(m, n))};
         sum.add(wedge(arc, length(b - a), radius), 0.5 * (a + b));
-        corners[edge.from].add_side(arc, -along);
-        corners[edge.to].add_side(arc, along);
+        corners[edge.from].first -= 0.5 * arc.angle * along;
+        corners[edge.to].first += 0.5 * arc.angle * along;
     }
     for (std::size_t i = 0; i < vertices.size(); ++i) sum.add(corners[i].sector(radius), vertices[i]);
+    const double ball = 4 * pi / 15 * radius * radius * radius * radius * radius;
+    sum.second = sum.second + diagonal(ball, ball, ball);
 
     const Vec3 center = sum.first / sum.size;
     const auto second = sum.second - outer_square(center) * sum.size;

@@ -62,6 +62,7 @@ struct ContactRows {
     std::array<F, D == 2 ? 1 : 3>
         patch_mass{};  ///< 2D: effective mass; 3D: inverse of the 2×2 system (xx, xy, yy)
     std::array<F, D - 1> friction_impulse{};
+    F roundness_a{}, roundness_b{};
     F friction{};
     F twist_mass{}, twist_impulse{};  ///< 3D
     Inertia<D, F> rolling_mass{};
@@ -118,10 +119,30 @@ Vec<D, F> way_of(const Motion<D, F>& m, const Vec<D, F>& arm) {
     return m.moved + once + F(0.5f) * cross(m.turned, once);
 }
 
+/// |θ|² of a rotation vector without its part about the normal.
+template <class F>
+F tilt_squared(const Vec<2, F>&, F turned) {
+    return turned * turned;
+}
+template <class F>
+F tilt_squared(const Vec<3, F>& normal, const Vec<3, F>& turned) {
+    const F about = dot(normal, turned);
+    return dot(turned, turned) - about * about;
+}
+
+/// What the second-order term of `way_of` opens too much where a shape is round: a ball that rolls presents
+/// new points at the same height, so the term belongs to the arm that ends at the centre of the curvature, a
+/// radius ρ further in: n · θ × (θ × ρn) = −ρ |θ|² (θ across n).
+template <int D, class F>
+F roundness(const ContactRows<D, F>& c, const Motion<D, F>& a, const Motion<D, F>& b) {
+    return F(0.5f) * (c.roundness_a * tilt_squared(c.normal, a.turned) +
+                      c.roundness_b * tilt_squared(c.normal, b.turned));
+}
+
 /// Gap at a point now. The normal is that of the step's start.
 template <int D, class F>
 F gap(const ContactRows<D, F>& c, const NormalRow<D, F>& p, const Motion<D, F>& a, const Motion<D, F>& b) {
-    return p.separation + dot(c.normal, way_of(b, p.arm_b) - way_of(a, p.arm_a));
+    return p.separation + dot(c.normal, way_of(b, p.arm_b) - way_of(a, p.arm_a)) - roundness(c, a, b);
 }
 
 /// What all contacts of a sub-step share.

@@ -127,6 +127,8 @@ void Solver<D>::prepare_contact(const ContactRecord<D>& record, Rows& rows, std:
     rows.tangents = tangents<D>(record.normal);
     rows.friction = record.friction;
     rows.rolling = record.rolling;
+    rows.roundness_a = record.roundness_a;
+    rows.roundness_b = record.roundness_b;
     const bool one_is_heavy = wa.mass == Vec<D, float>{} || wb.mass == Vec<D, float>{};
     rows.soft = one_is_heavy ? soft_fixed_ : soft_;
 
@@ -296,16 +298,17 @@ void Solver<D>::find_impacts(const SolverInput<D>& input) {
         const ContactRecord<D>& record = input.contacts[input.active[i]];
         if (record.restitution == 0) continue;
         const auto [a, b] = pairs_[i];
-        const auto acceleration = [&](std::uint32_t s, const Vec<D, float>& arm) {
-            const Drive& d = drives_[s];
-            return (d.change + cross(d.spin_change, arm)) * (1 / h_);
-        };
+        const Vec<D, float>& n = rows_[i].normal;
+        // Steady constraints count beside the outer forces (a ball that falls on a box at rest), but what
+        // they do now may be the echo of a blow: no more than the outer forces could make is believed.
+        const float most =
+            std::fabs(dot(n, drives_[a].acceleration)) + std::fabs(dot(n, drives_[b].acceleration));
+        const float steady = dot(n, drives_[b].change - drives_[a].change) * (1 / h_);
+        const float pull = std::clamp(steady, -most, most);
         for (int k = 0; k < record.count; ++k) {
             const NormalRow<D, float>& p = rows_[i].points[k];
-            const Vec<D, float> v = relative_velocity(motions_[a], motions_[b], p.arm_a, p.arm_b);
-            const Vec<D, float> pull = acceleration(b, p.arm_b) - acceleration(a, p.arm_a);
-            impacts_.push_back({i, static_cast<std::uint32_t>(k), record.restitution, dot(rows_[i].normal, v),
-                                dot(rows_[i].normal, pull)});
+            const float speed = dot(n, relative_velocity(motions_[a], motions_[b], p.arm_a, p.arm_b));
+            impacts_.push_back({i, static_cast<std::uint32_t>(k), record.restitution, speed, pull});
         }
     }
 }

@@ -50,6 +50,15 @@ bool carry_impulses(const ContactRecord<D>& old, ContactRecord<D>& now, double n
     return std::find(std::begin(found), std::end(found), true) != std::end(found);
 }
 
+/// Radius of the shape's curvature where it touches along `normal` (in its body's frame): a cylinder or cone
+/// is round on its side and flat on its base.
+template <int D>
+double roundness(const Shape<D>& shape, const Vec<D>& normal) {
+    if (shape.kind == ShapeKind::plane) return 0;
+    if (shape.kind != ShapeKind::cylinder && shape.kind != ShapeKind::cone) return shape.radius;
+    return std::fabs(dot(normal, shape.b)) < 0.5 ? shape.radius : 0;
+}
+
 /// Where a body will be after `time` seconds if only gravity acts on it.
 template <int D>
 BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity, double time) {
@@ -70,6 +79,9 @@ void WorldState<D>::touch(ContactRecord<D>& c, const BodyState<D>& a, const Body
                                             relative(frame(a, ma), frame(b, mb)), reach);
     c.count = m.count;
     c.normal = narrow<float>(rotate(a.rotation, m.normal));
+    c.roundness_a = static_cast<float>(roundness<D>(shapes[c.shape_a].shape, m.normal));
+    c.roundness_b = static_cast<float>(
+        roundness<D>(shapes[c.shape_b].shape, unrotate(b.rotation, rotate(a.rotation, m.normal))));
     const Vec<D> between = a.position - b.position;
     for (int i = 0; i < m.count; ++i) {
         const Vec<D> arm = rotate(a.rotation, m.points[i].position - ma.center);

@@ -102,7 +102,9 @@ void Body3::find_faces() {
 double Body3::reach(const Vec3& direction) const {
     const Vec3 d = unrotate(placed_.rotation, direction);
     double furthest = -1e300;
-    if (plane_) return length(d - half_space_.normal) < 1e-7 ? half_space_.offset + dot(direction, placed_.position) : 1e300;
+    if (plane_)
+        return length(d - half_space_.normal) < 1e-7 ? half_space_.offset + dot(direction, placed_.position)
+                                                     : 1e300;
     for (const Vec3& vertex : vertices_) furthest = std::max(furthest, dot(d, vertex));
     if (vertices_.empty()) {
         const double across = std::sqrt(d.x * d.x + d.z * d.z);
@@ -146,7 +148,8 @@ double Body3::revolved_height(const Vec3& p) const {
     const Vec3 flat{r, p.y, 0};
     const Vec3 profile[4] = {{0, -h, 0}, {bottom_, -h, 0}, {top_, h, 0}, {0, h, 0}};
     double least = 1e300;
-    for (int i = 0; i < 3; ++i) least = std::min(least, length(flat - nearest_on_segment(profile[i], profile[i + 1], flat)));
+    for (int i = 0; i < 3; ++i)
+        least = std::min(least, length(flat - nearest_on_segment(profile[i], profile[i + 1], flat)));
     const double width = bottom_ + (top_ - bottom_) * (p.y + h) / (2 * h);
     return r < width && std::fabs(p.y) < h ? -least : least;
 }
@@ -216,7 +219,8 @@ double widest_gap(const Body3& a, const Body3& b) {
     const Vec3 apart = b.placed().position - a.placed().position;
     if (length(apart) > 0) start(normalized(apart));
     std::sort(starts.begin(), starts.end(), [](const Start& p, const Start& q) { return p.gap > q.gap; });
-    for (std::size_t i = 0; i < 12; ++i) widest = std::max(widest, climb(a, b, starts[i].axis, starts[i].gap, random));
+    for (std::size_t i = 0; i < 12; ++i)
+        widest = std::max(widest, climb(a, b, starts[i].axis, starts[i].gap, random));
     return widest;
 }
 
@@ -226,9 +230,12 @@ std::string name_of(Kind kind) {
 }
 
 Geometry<3> random_geometry(Kind kind, double size, Random& random) {
-    const auto part = [&] { return size * (random.below(6) == 0 ? random.between(0.01, 0.05) : random.between(0.2, 1)); };
+    const auto part = [&] {
+        return size * (random.below(6) == 0 ? random.between(0.01, 0.05) : random.between(0.2, 1));
+    };
     switch (kind) {
-        case Kind::ball: return Ball{0.5 * part()};
+        case Kind::ball:
+            return Ball{0.5 * part()};
         case Kind::box: {
             const Vec3 lengths{part(), part(), part()};
             const double thinnest = std::min({lengths.x, lengths.y, lengths.z});
@@ -249,9 +256,12 @@ Geometry<3> random_geometry(Kind kind, double size, Random& random) {
             hull.rounding = random.below(2) ? 0.0 : 0.05 * size * random.unit();
             return hull;
         }
-        case Kind::plane: return Plane3{random.direction<3>(), random.between(-size, size)};
-        case Kind::cylinder: return Cylinder{0.5 * part(), part()};
-        case Kind::cone: return Cone{0.5 * part(), part()};
+        case Kind::plane:
+            return Plane3{random.direction<3>(), random.between(-size, size)};
+        case Kind::cylinder:
+            return Cylinder{0.5 * part(), part()};
+        case Kind::cone:
+            return Cone{0.5 * part(), part()};
     }
     return Ball{size};
 }

@@ -24,7 +24,8 @@ class Body3 {
     double size() const { return size_; }
     double thickness() const { return thickness_; }
     double radius() const { return radius_; }
-    /// How far the engine's shape may be off: hulls leave out points that stand out by less than 1e-5 of the size.
+    /// How far the engine's shape may be off: hulls leave out points that stand out by less than 1e-5 of the
+    /// size.
     double vagueness() const { return hull_ ? 3e-5 * size_ : 0; }
     bool is_plane() const { return plane_; }
     /// A core that is a point, a segment or a polyhedron has all its corners here; others have none.
@@ -63,8 +64,8 @@ class Body3 {
 double gap_along(const Body3& a, const Body3& b, const Vec3& axis);
 
 /// The widest gap over all directions: the distance of shapes that are apart, minus the depth of those that
-/// overlap. Exact for points, segments and polyhedra (all pairs of features are tried); for cylinders and cones
-/// a search over many directions, which may fall a little short.
+/// overlap. Exact for points, segments and polyhedra (all pairs of features are tried); for cylinders and
+/// cones a search over many directions, which may fall a little short.
 double widest_gap(const Body3& a, const Body3& b);
 
 /// The kinds of shape, in the order of `Geometry<3>`.

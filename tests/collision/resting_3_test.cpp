@@ -10,7 +10,8 @@ namespace carom::test::space {
 
 namespace {
 
-/// A shape and how it is turned, with the height of its centre over the floor that it lies on, and of its top.
+/// A shape and how it is turned, with the height of its centre over the floor that it lies on, and of its
+/// top.
 struct Posture {
     std::string name;
     Geometry<3> geometry;
@@ -33,7 +34,8 @@ std::vector<Vec3> prism_corners(double half_height, double radius) {
     return corners;
 }
 
-/// Lies on its side: a cone's generator line is tilted against its axis by atan(radius/height), here 30 degrees.
+/// Lies on its side: a cone's generator line is tilted against its axis by atan(radius/height), here 30
+/// degrees.
 Rotation3 cone_on_its_side() {
     return Rotation3::from_axis_angle({1, 0, 0}, (0.5 + 1.0 / 6) * 3.14159265358979323846);
 }
@@ -49,7 +51,8 @@ std::vector<Posture> postures() {
         {"lying capsule", Capsule3{{0, 0, -0.5}, {0, 0, 0.5}, 0.3}, upright, 0.3, 0.3, 2, 2},
         {"prism", Hull3{prism_corners(0.4, 0.6)}, upright, 0.4, 0.4, 4, 2},
         {"rounded prism", Hull3{prism_corners(0.3, 0.6), 0.1}, upright, 0.4, 0.4, 4, 2},
-        {"tetrahedron", Hull3{{{-0.6, -0.3, -0.5}, {0.6, -0.3, -0.5}, {0, -0.3, 0.7}, {0, 0.6, 0}}}, upright, 0.3, 0.6, 3, 2},
+        {"tetrahedron", Hull3{{{-0.6, -0.3, -0.5}, {0.6, -0.3, -0.5}, {0, -0.3, 0.7}, {0, 0.6, 0}}}, upright,
+         0.3, 0.6, 3, 2},
         {"standing cylinder", Cylinder{0.4, 1}, upright, 0.5, 0.5, 4, 2},
         {"lying cylinder", Cylinder{0.4, 1}, along_z, 0.4, 0.4, 2, 2},
         {"standing cone", Cone{0.5, 1}, upright, 0.5, 0.5, 4, 2},
@@ -99,7 +102,8 @@ void expect_steady(const Posture& posture, const Ground& ground, int count) {
     for (int n = 0; n < 40; ++n) {
         const double depth = random.between(-1e-4, 1e-3), tremble = n % 2 ? 1e-7 : 0;
         const Rotation3 tilt = Rotation3::from_axis_angle(random.direction<3>(), tremble);
-        const Vec3 center = Vec3{ground.off_center, posture.below - depth, 0.02} + tremble * random.direction<3>();
+        const Vec3 center =
+            Vec3{ground.off_center, posture.below - depth, 0.02} + tremble * random.direction<3>();
         const Manifold<3> found = collide<3>(a, ground.placed, b, {center, tilt * posture.turn}, 0.01);
         ASSERT_EQ(found.count, count) << "depth " << depth;
         EXPECT_NEAR(found.normal.y, 1, 1e-9);
@@ -107,7 +111,8 @@ void expect_steady(const Posture& posture, const Ground& ground, int count) {
             EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].separation, -depth, 1e-6);
             EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].position.y, -0.5 * depth, 1e-6);
         }
-        EXPECT_EQ(features(found).size(), static_cast<std::size_t>(count)) << "every point has its own feature";
+        EXPECT_EQ(features(found).size(), static_cast<std::size_t>(count))
+            << "every point has its own feature";
         if (n == 0) first = features(found);
         EXPECT_EQ(features(found), first) << "features stay the same, depth " << depth;
     }
@@ -139,7 +144,9 @@ std::vector<Touching> touching() {
     const Geometry<3> cube = Box3{{1, 1, 1}}, plank = Box3{{4, 0.1, 0.3}}, barrel = Cylinder{0.4, 1};
     const Geometry<3> prism = Hull3{prism_corners(0.4, 0.6)}, rounded = Box3{{1, 1, 1}, 0.1};
     const Transform3 here{};
-    const auto at = [](double x, double y, double z, const Rotation3& turn = {}) { return Transform3{{x, y, z}, turn}; };
+    const auto at = [](double x, double y, double z, const Rotation3& turn = {}) {
+        return Transform3{{x, y, z}, turn};
+    };
     return {
         {"equal cubes, one on the other", cube, cube, here, at(0, 1, 0), 4},
         {"equal cubes, shifted", cube, cube, here, at(0.3, 1, 0), 4},
@@ -150,7 +157,8 @@ std::vector<Touching> touching() {
         {"prism on a cube of its width", cube, prism, here, at(0, 0.9, 0), 4},
         {"planks, crossed", plank, plank, here, at(0.2, 0.1, 0.1, about_y(1.2)), 4},
         {"planks, far out", plank, plank, here, at(1.9, 0.1, 0, about_y(1.57079632679489662)), 4},
-        {"small cube on a large one's edge", Box3{{4, 1, 4}}, Box3{{0.2, 0.2, 0.2}}, here, at(2, 0.6, 0.3), 4},
+        {"small cube on a large one's edge", Box3{{4, 1, 4}}, Box3{{0.2, 0.2, 0.2}}, here, at(2, 0.6, 0.3),
+         4},
         {"equal barrels", barrel, barrel, here, at(0, 1, 0), 4},
         {"barrel on a wider one", Cylinder{0.6, 1}, barrel, here, at(0.1, 1, 0.05, about_y(0.3)), 4},
         {"barrel on a narrower one", barrel, Cylinder{0.6, 1}, here, at(0.1, 1, 0.05, about_y(0.3)), 4},
@@ -158,21 +166,23 @@ std::vector<Touching> touching() {
         {"box on a barrel", barrel, cube, here, at(0.1, 1, 0, about_y(0.2)), 4},
         {"box half over the edge of a barrel", barrel, cube, here, at(0.5, 1, 0, about_y(0.2)), 4},
         {"barrels lying side on side", barrel, barrel, at(0, 0, 0, along_z), at(0, 0.8, 0.1, along_z), 2},
-        {"barrel lying across another", barrel, barrel, at(0, 0, 0, along_z), at(0, 0.8, 0.1, about_y(1) * along_z), 1},
+        {"barrel lying across another", barrel, barrel, at(0, 0, 0, along_z),
+         at(0, 0.8, 0.1, about_y(1) * along_z), 1},
         {"barrel lying on the end of one that stands", barrel, barrel, here, at(0, 0.9, 0.1, along_z), 2},
-        {"capsule over the edge of a box", Box3{{2, 1, 2}}, Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, here, at(0.9, 0.7, 0), 2},
-        {"capsule across a capsule", Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, Capsule3{{0, 0, -1}, {0, 0, 1}, 0.2}, here,
-         at(0, 0.4, 0), 1},
-        {"capsules side by side", Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.3}, here,
-         at(0.5, 0.5, 0), 2},
+        {"capsule over the edge of a box", Box3{{2, 1, 2}}, Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, here,
+         at(0.9, 0.7, 0), 2},
+        {"capsule across a capsule", Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2},
+         Capsule3{{0, 0, -1}, {0, 0, 1}, 0.2}, here, at(0, 0.4, 0), 1},
+        {"capsules side by side", Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.2}, Capsule3{{-1, 0, 0}, {1, 0, 0}, 0.3},
+         here, at(0.5, 0.5, 0), 2},
         {"cone on a cone's base", Cone{0.5, 1}, Cone{0.4, 1}, at(0, 0, 0, upside_down), at(0.05, 1, 0), 4},
         {"edge of a box on a plate", Box3{{4, 0.2, 4}}, cube, here,
          at(0, 0.1 + std::sqrt(0.5), 0, Rotation3::from_axis_angle({1, 0, 0}, 0.78539816339744831)), 2},
         {"edge of a box across the edge of a box", cube, cube,
          at(0, 0, 0, Rotation3::from_axis_angle({1, 0, 0}, 0.78539816339744831)),
          at(0.1, std::sqrt(2.0), 0.05, Rotation3::from_axis_angle({0, 0, 1}, 0.78539816339744831)), 1},
-        {"corner of a box on a plate", Box3{{4, 0.2, 4}}, Hull3{{{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}, {0, 1.2, -1}}}, here,
-         at(0, 0.1, 0), 1},
+        {"corner of a box on a plate", Box3{{4, 0.2, 4}},
+         Hull3{{{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}, {0, 1.2, -1}}}, here, at(0, 0.1, 0), 1},
     };
 }
 

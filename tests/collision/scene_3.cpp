@@ -46,7 +46,8 @@ double smaller_size(const Body3& a, const Body3& b) {
 }
 
 std::string name_of_pair(const std::tuple<int, int>& pair) {
-    return name_of(static_cast<Kind>(std::get<0>(pair))) + "_" + name_of(static_cast<Kind>(std::get<1>(pair)));
+    return name_of(static_cast<Kind>(std::get<0>(pair))) + "_" +
+           name_of(static_cast<Kind>(std::get<1>(pair)));
 }
 
 }  // namespace carom::test::space

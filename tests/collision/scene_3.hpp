@@ -6,16 +6,16 @@
 
 namespace carom::test::space {
 
-/// Two random shapes of given kinds, placed at random: turned freely, or along the axes (`aligned`), now and then
-/// with a tremble.
+/// Two random shapes of given kinds, placed at random: turned freely, or along the axes (`aligned`), now and
+/// then with a tremble.
 struct Scene {
     Scene(Kind kind_a, Kind kind_b, bool aligned, Random& random);
 
     Body3 oracle_a() const { return {a, a_placed}; }
     Body3 oracle_b() const { return {b, b_placed}; }
 
-    /// Moves b along the axis of the widest gap: a deep overlap, a resting contact, a hair's breadth either way, a
-    /// small gap, or as it is.
+    /// Moves b along the axis of the widest gap: a deep overlap, a resting contact, a hair's breadth either
+    /// way, a small gap, or as it is.
     void bring_to(Random& random);
 
     Geometry<3> a, b;

@@ -96,7 +96,7 @@ Sample<D> random_hull(Random& random, bool is_rounded) {
     Hull<D> hull;
     const int count = 6 + random.below(10);
     for (int i = 0; i < count; ++i) hull.points.push_back(random.in_cube<D>(1) + Vec<D>{0.5, 2});
-    if (is_rounded) hull.rounding = random.between(0.05, 0.5);
+    if (is_rounded) hull.rounding = random.between(0.05, 2);
     detail::Polytope<D> core;
     if constexpr (D == 2) {
         core = detail::convex_polygon(hull.points);

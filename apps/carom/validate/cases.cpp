@@ -13,6 +13,9 @@ std::span<const Case> validation_cases() {
         {"B2", "a cube slides to rest, in every direction", slide_to_rest},
         {"B3", "slip goes over into rolling", slip_to_roll},
         {"B4", "rolling down an incline", roll_down},
+        {"B6", "a ball bounces", bouncing_ball},
+        {"B7", "a rod strikes a smooth floor", rod_strikes},
+        {"B15", "a pyramid 1e7 m from the origin", far_away},
     };
     return cases;
 }

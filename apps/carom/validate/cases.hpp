@@ -14,5 +14,8 @@ std::vector<Result> incline();
 std::vector<Result> slide_to_rest();
 std::vector<Result> slip_to_roll();
 std::vector<Result> roll_down();
+std::vector<Result> bouncing_ball();
+std::vector<Result> rod_strikes();
+std::vector<Result> far_away();
 
 }  // namespace carom::app

@@ -110,7 +110,9 @@ Nearest3 point_revolved(const Pair3& pair, const Search3&) {
 
     // In the half-plane through the axis and the point the body is a convex polygon against the axis.
     const double top = shape.kind == ShapeKind::cone ? 0 : shape.radius;
-    const Vec2 profile[4] = {{0, -shape.half_height}, {shape.radius, -shape.half_height}, {top, shape.half_height},
+    const Vec2 profile[4] = {{0, -shape.half_height},
+                             {shape.radius, -shape.half_height},
+                             {top, shape.half_height},
                              {0, shape.half_height}};
     const Vec2 p{r, y};
     double gap = -1e300, least = 1e300;

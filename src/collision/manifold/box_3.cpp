@@ -11,8 +11,10 @@ namespace {
 /// Two boxes in the frame of the first one's axes.
 struct Boxes {
     Boxes(const Pair3& pair)
-        : a(pair.a.b), b(pair.b.b), placed(relative<3>({pair.a.a, pair.a.rotation},
-                                                       pair.b_in_a * Transform3{pair.b.a, pair.b.rotation})) {
+        : a(pair.a.b),
+          b(pair.b.b),
+          placed(
+              relative<3>({pair.a.a, pair.a.rotation}, pair.b_in_a * Transform3{pair.b.a, pair.b.rotation})) {
         for (int j = 0; j < 3; ++j) {
             Vec3 unit{};
             unit[j] = 1;
@@ -74,8 +76,8 @@ Candidate widest_of_edges(const Boxes& boxes) {
     return widest;
 }
 
-/// The corner of a box that lies furthest along `direction`, both in the box's axes; a component below zero by
-/// rounding alone counts as zero, so that flat sides always give the same corner.
+/// The corner of a box that lies furthest along `direction`, both in the box's axes; a component below zero
+/// by rounding alone counts as zero, so that flat sides always give the same corner.
 Vec3 corner(const Vec3& half, const Vec3& direction) {
     return {direction.x < -1e-9 ? -half.x : half.x, direction.y < -1e-9 ? -half.y : half.y,
             direction.z < -1e-9 ? -half.z : half.z};
@@ -106,7 +108,8 @@ Nearest3 at_edges(const Boxes& boxes, const Candidate& edges) {
     from_b = apply(boxes.placed, from_b);
     const SegmentPoints at = closest_on_segments(from_a, along_a, from_b, along_b);
     const bool inside = at.s > 0 && at.s < 1 && at.t > 0 && at.t < 1;
-    return {edges.normal, edges.gap, from_a + at.s * along_a, from_b + at.t * along_b, edges.gap <= 0 || inside};
+    return {edges.normal, edges.gap, from_a + at.s * along_a, from_b + at.t * along_b,
+            edges.gap <= 0 || inside};
 }
 
 }  // namespace

@@ -9,7 +9,9 @@ SegmentPoints closest_on_segments(const Vec3& p, const Vec3& u, const Vec3& q, c
     // The quadratic |p + s·u − q − t·v|² at its least over the unit square (Ericson 2005, 5.1.9).
     const Vec3 r = p - q;
     const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), ur = dot(u, r), vr = dot(v, r);
-    const auto share = [](double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; };
+    const auto share = [](double part, double whole) {
+        return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
+    };
     const double determinant = uu * vv - uv * uv;
     double s = determinant > 1e-14 * uu * vv ? share(uv * vr - ur * vv, determinant) : 0.0;
     double t = share(uv * s + vr, vv);
@@ -40,9 +42,9 @@ Nearest3 segment_segment(const Pair3& pair, const Search3&) {
 
 namespace {
 
-/// The widest gap along the normals of faces, and along those of pairs of edges, of a segment and a polyhedron in
-/// whose frame everything is. A pair of edges counts where its normal lies between those of the polyhedron's two
-/// faces (the Gauss map of a segment is a great circle).
+/// The widest gap along the normals of faces, and along those of pairs of edges, of a segment and a
+/// polyhedron in whose frame everything is. A pair of edges counts where its normal lies between those of the
+/// polyhedron's two faces (the Gauss map of a segment is a great circle).
 Nearest3 widest_over_faces(const Polyhedron& core, const Vec3& from, const Vec3& to) {
     Nearest3 widest;
     widest.distance = -1e300;
@@ -86,7 +88,8 @@ Nearest3 segment_polyhedron(const Pair3& pair, const Search3& search) {
     Nearest3 widest = widest_over_faces(*pair.b.core, from, to);
     if (widest.distance > search.limit) return exchanged(widest, pair.b_in_a);
     const Nearest3 edges = widest_over_edges(*pair.b.core, from, to);
-    if (edges.distance > widest.distance + advantage(pair, search, widest.distance, length(to - from))) widest = edges;
+    if (edges.distance > widest.distance + advantage(pair, search, widest.distance, length(to - from)))
+        widest = edges;
     return exchanged(widest, pair.b_in_a);
 }
 

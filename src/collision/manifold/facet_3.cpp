@@ -47,7 +47,8 @@ void box_facet(const Shape<3>& box, const Vec3& direction, Facet3& facet) {
         p[v] = along_v * half[v];
         return rotate(box.rotation, p) + box.a;
     };
-    facet.corners.assign({{corner(-1, -sign), 0}, {corner(1, -sign), 1}, {corner(1, sign), 2}, {corner(-1, sign), 3}});
+    facet.corners.assign(
+        {{corner(-1, -sign), 0}, {corner(1, -sign), 1}, {corner(1, sign), 2}, {corner(-1, sign), 3}});
     Vec3 normal{};
     normal[axis] = sign;
     set_face(facet, rotate(box.rotation, normal), Facet3::Form::face);
@@ -66,9 +67,9 @@ void hull_facet(const Shape<3>& hull, const Vec3& direction, Facet3& facet) {
     for (std::size_t f = 0; f < core.normals.size(); ++f) {
         const double candidate = dot(direction, core.normals[f]);
         if (candidate <= alignment) continue;
-        const bool touches = std::any_of(
-            core.indices.begin() + core.first[f], core.indices.begin() + core.first[f + 1],
-            [&](std::uint32_t index) { return dot(direction, core.vertices[index]) >= reached; });
+        const bool touches =
+            std::any_of(core.indices.begin() + core.first[f], core.indices.begin() + core.first[f + 1],
+                        [&](std::uint32_t index) { return dot(direction, core.vertices[index]) >= reached; });
         if (touches) {
             alignment = candidate;
             best = f;
@@ -82,11 +83,20 @@ void hull_facet(const Shape<3>& hull, const Vec3& direction, Facet3& facet) {
     set_face(facet, core.normals[best], Facet3::Form::face);
 }
 
-/// The polygon of a disk. Its first corner is the one that lies furthest along `direction`, so that a tilted disk
-/// touches with its true lowest point; a disk that lies flat keeps its corners where they are in the body.
+/// The polygon of a disk. Its first corner is the one that lies furthest along `direction`, so that a tilted
+/// disk touches with its true lowest point; a disk that lies flat keeps its corners where they are in the
+/// body.
 void disk_facet(const Shape<3>& shape, const Vec3& normal, const Vec3& direction, Facet3& facet) {
     // Cosines of the first quarter in steps of a sixteenth of π.
-    constexpr std::array<double, disk_corners / 4 + 1> quarter{1, 0.98078528040323043, 0.92387953251128674, 0.83146961230254524, 0.70710678118654757, 0.55557023301960229, 0.38268343236508984, 0.19509032201612833, 0};
+    constexpr std::array<double, disk_corners / 4 + 1> quarter{1,
+                                                               0.98078528040323043,
+                                                               0.92387953251128674,
+                                                               0.83146961230254524,
+                                                               0.70710678118654757,
+                                                               0.55557023301960229,
+                                                               0.38268343236508984,
+                                                               0.19509032201612833,
+                                                               0};
     constexpr double flat = 2e-5;
     const Vec3 slope = direction - dot(direction, normal) * normal;
     const Vec3 u = length(slope) > flat ? normalized(slope) : any_perpendicular(shape.b);
@@ -144,13 +154,20 @@ void plane_facet(const Shape<3>& plane, Facet3& facet) {
 void find_facet(const Shape<3>& shape, const Vec3& direction, Facet3& facet) {
     facet.id = 0;
     switch (shape.kind) {
-        case ShapeKind::ball: return;
-        case ShapeKind::capsule: return set_edge(facet, shape.a, shape.b);
-        case ShapeKind::box: return box_facet(shape, direction, facet);
-        case ShapeKind::hull: return hull_facet(shape, direction, facet);
-        case ShapeKind::cylinder: return cylinder_facet(shape, direction, facet);
-        case ShapeKind::cone: return cone_facet(shape, direction, facet);
-        case ShapeKind::plane: return plane_facet(shape, facet);
+        case ShapeKind::ball:
+            return;
+        case ShapeKind::capsule:
+            return set_edge(facet, shape.a, shape.b);
+        case ShapeKind::box:
+            return box_facet(shape, direction, facet);
+        case ShapeKind::hull:
+            return hull_facet(shape, direction, facet);
+        case ShapeKind::cylinder:
+            return cylinder_facet(shape, direction, facet);
+        case ShapeKind::cone:
+            return cone_facet(shape, direction, facet);
+        case ShapeKind::plane:
+            return plane_facet(shape, facet);
     }
 }
 

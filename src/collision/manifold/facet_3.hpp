@@ -14,8 +14,8 @@ struct FacetCorner {
     std::uint32_t side;
 };
 
-/// What a core offers to rest on in some direction: a face (corners counter-clockwise seen from outside) or an
-/// edge (two corners). The face of a plane has no corners; a disk is given by a polygon inscribed in it.
+/// What a core offers to rest on in some direction: a face (corners counter-clockwise seen from outside) or
+/// an edge (two corners). The face of a plane has no corners; a disk is given by a polygon inscribed in it.
 struct Facet3 {
     enum class Form : std::uint8_t { edge, face, disk, plane };
     explicit Facet3(std::pmr::memory_resource& memory) : corners(&memory) {}
@@ -28,12 +28,12 @@ struct Facet3 {
     Form form = Form::edge;
 };
 
-/// Corners of the polygon that stands for a disk, which it fits within half a percent of the radius. Every eighth
-/// is one of the four that support a disk which rests entirely on a face.
+/// Corners of the polygon that stands for a disk, which it fits within half a percent of the radius. Every
+/// eighth is one of the four that support a disk which rests entirely on a face.
 constexpr int disk_corners = 32;
 
-/// Sets `facet` to the face or edge of the shape's core that looks most along the unit vector `direction`, among
-/// those that reach furthest along it. Not for balls.
+/// Sets `facet` to the face or edge of the shape's core that looks most along the unit vector `direction`,
+/// among those that reach furthest along it. Not for balls.
 void find_facet(const Shape<3>& shape, const Vec3& direction, Facet3& facet);
 
 /// Carries the facet to the frame that `t` is placed in.

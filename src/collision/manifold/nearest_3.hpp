@@ -6,9 +6,9 @@
 
 namespace carom::detail {
 
-// Collision in space goes in two steps. First a routine for the pair of kinds finds along which direction, and
-// by how much, the cores of the two shapes are nearest to being apart. Then contact_patch (patch_3.hpp), which
-// knows shapes only by their faces and edges, makes the manifold across that direction.
+// Collision in space goes in two steps. First a routine for the pair of kinds finds along which direction,
+// and by how much, the cores of the two shapes are nearest to being apart. Then contact_patch (patch_3.hpp),
+// which knows shapes only by their faces and edges, makes the manifold across that direction.
 
 /// Two shapes; the second stands in the frame of the first.
 struct Pair3 {
@@ -29,8 +29,8 @@ struct Nearest3 {
     double distance = 0;  ///< gap between the cores along it; negative where they overlap
     Vec3 on_a{};          ///< points of the cores that face each other there
     Vec3 on_b{};
-    /// False where only the direction is known: the points may lie beside each other, and cores that are apart
-    /// may be further apart than along any face's normal.
+    /// False where only the direction is known: the points may lie beside each other, and cores that are
+    /// apart may be further apart than along any face's normal.
     bool certain = true;
 };
 

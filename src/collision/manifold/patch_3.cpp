@@ -12,13 +12,13 @@ namespace {
 using Corners = std::pmr::vector<FacetCorner>;
 using Points = std::pmr::vector<ManifoldPoint<3>>;
 
-/// A face counts as facing the contact when its normal is within 2.5 degrees of the contact's, and two edges count
-/// as parallel when they are within 3 degrees of each other.
+/// A face counts as facing the contact when its normal is within 2.5 degrees of the contact's, and two edges
+/// count as parallel when they are within 3 degrees of each other.
 constexpr double facing_cosine = 0.999;
 constexpr double parallel_sine = 0.05;
 
-/// Corners and crossings that are nearer to a side than this share of the smaller facet count as on it, so that
-/// faces which fit each other keep their features while the bodies tremble.
+/// Corners and crossings that are nearer to a side than this share of the smaller facet count as on it, so
+/// that faces which fit each other keep their features while the bodies tremble.
 constexpr double snap_share = 1e-4;
 
 /// Room for the common case; larger facets spill to the heap.
@@ -44,12 +44,13 @@ struct Meeting {
 };
 
 /// A source names a side of one of the two facets. A point of the patch is named by the facets and by the two
-/// sides that cross there: both of one facet for its own corner, one of each for a crossing. So the name is the
-/// same whichever of the two facets was clipped.
+/// sides that cross there: both of one facet for its own corner, one of each for a crossing. So the name is
+/// the same whichever of the two facets was clipped.
 std::uint32_t source_of(bool of_b, std::uint32_t side) { return 2 * side + (of_b ? 1 : 0); }
 
 std::uint32_t feature_of(const Meeting& meeting, std::uint32_t source, std::uint32_t other) {
-    return (meeting.a.id & 0xffu) << 24 | (meeting.b.id & 0xffu) << 16 | (source & 0xffu) << 8 | (other & 0xffu);
+    return (meeting.a.id & 0xffu) << 24 | (meeting.b.id & 0xffu) << 16 | (source & 0xffu) << 8 |
+           (other & 0xffu);
 }
 
 /// A side of a face seen as a half-space: the height of a point outside it.
@@ -66,7 +67,8 @@ Side side_of(const Facet3& face, std::size_t i) {
 }
 
 /// Cuts off what lies outside the side; corners within `snap` of it stay as they are.
-void clip_polygon(const Corners& polygon, const Side& side, std::uint32_t source, double snap, Corners& kept) {
+void clip_polygon(const Corners& polygon, const Side& side, std::uint32_t source, double snap,
+                  Corners& kept) {
     kept.clear();
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const FacetCorner& p = polygon[i];
@@ -87,7 +89,8 @@ void clip_polygon(const Corners& polygon, const Side& side, std::uint32_t source
 }
 
 /// The part of `flat` (a polygon, or an edge) over the face `base`. The corners' sides become sources.
-void clip(const Facet3& base, bool base_is_b, const Facet3& flat, double snap, Corners& kept, Corners& spare) {
+void clip(const Facet3& base, bool base_is_b, const Facet3& flat, double snap, Corners& kept,
+          Corners& spare) {
     const std::size_t room = base.corners.size() + flat.corners.size() + 1;
     kept.reserve(room);
     spare.reserve(room);
@@ -112,8 +115,8 @@ bool lies_over(const Facet3& disk, const Facet3& base) {
     return true;
 }
 
-/// Lets points that coincide within `snap` be one, and gives those that are left names of their own (two sides that
-/// lie along each other cross twice, within the snap).
+/// Lets points that coincide within `snap` be one, and gives those that are left names of their own (two
+/// sides that lie along each other cross twice, within the snap).
 void merge(Points& points, double snap) {
     std::size_t count = 0;
     for (const ManifoldPoint<3>& point : points) {
@@ -150,12 +153,14 @@ int greatest(const Points& points, const Measure& measure) {
     return static_cast<int>(first - points.begin());
 }
 
-/// Picks four points that keep the area of all, the deepest among them. The choice begins at a fixed direction,
-/// not at the deepest point, which changes from step to step when all are nearly equally deep.
+/// Picks four points that keep the area of all, the deepest among them. The choice begins at a fixed
+/// direction, not at the deepest point, which changes from step to step when all are nearly equally deep.
 std::array<int, 4> pick_four(const Points& points, const Vec3& normal) {
     const Vec3 across = any_perpendicular(normal);
     const auto at = [&](int i) { return points[static_cast<std::size_t>(i)].position; };
-    const auto area = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return dot(normal, cross(q - p, r - p)); };
+    const auto area = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+        return dot(normal, cross(q - p, r - p));
+    };
 
     std::array<int, 4> chosen{};
     chosen[0] = greatest(points, [&](const auto& p) { return dot(across, p.position - at(0)); });
@@ -166,12 +171,14 @@ std::array<int, 4> pick_four(const Points& points, const Vec3& normal) {
     Vec3 third = at(chosen[2]), turn = second;
     if (area(first, second, third) < 0) std::swap(third, turn);
     chosen[3] = greatest(points, [&](const auto& p) {
-        return -std::min({area(first, turn, p.position), area(turn, third, p.position), area(third, first, p.position)});
+        return -std::min(
+            {area(first, turn, p.position), area(turn, third, p.position), area(third, first, p.position)});
     });
 
     int deepest = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
-        if (points[i].separation < points[static_cast<std::size_t>(deepest)].separation) deepest = static_cast<int>(i);
+        if (points[i].separation < points[static_cast<std::size_t>(deepest)].separation)
+            deepest = static_cast<int>(i);
     }
     const auto separation = [&](int i) { return points[static_cast<std::size_t>(i)].separation; };
     const int lowest = *std::min_element(chosen.begin(), chosen.end(),
@@ -189,13 +196,15 @@ Manifold<3> manifold_of(const Points& points, const Vec3& normal) {
     Manifold<3> manifold;
     manifold.normal = normal;
     if (points.size() <= 4) {
-        for (const ManifoldPoint<3>& point : points) manifold.points[static_cast<std::size_t>(manifold.count++)] = point;
+        for (const ManifoldPoint<3>& point : points)
+            manifold.points[static_cast<std::size_t>(manifold.count++)] = point;
         return manifold;
     }
     const std::array<int, 4> chosen = pick_four(points, normal);
     for (std::size_t i = 0; i < 4; ++i) {
         if (i > 0 && chosen[i] == chosen[i - 1]) continue;
-        manifold.points[static_cast<std::size_t>(manifold.count++)] = points[static_cast<std::size_t>(chosen[i])];
+        manifold.points[static_cast<std::size_t>(manifold.count++)] =
+            points[static_cast<std::size_t>(chosen[i])];
     }
     return manifold;
 }
@@ -229,7 +238,8 @@ bool face_patch(const Meeting& meeting, bool base_is_b, double reach, Manifold<3
         // The two faces run round the patch in opposite senses; an edge, which has but two corners, in both.
         std::uint32_t before = kept[(i + kept.size() - 1) % kept.size()].side, after = kept[i].side;
         if (!flat_is_edge && before > after) std::swap(before, after);
-        points.push_back({p + (0.5 * (lift - gap)) * base.normal, gap - radii, feature_of(meeting, before, after)});
+        points.push_back(
+            {p + (0.5 * (lift - gap)) * base.normal, gap - radii, feature_of(meeting, before, after)});
     }
     if (points.empty() || !meeting.confirms(least)) return false;
     merge(points, snap);
@@ -265,7 +275,8 @@ bool edge_patch(const Meeting& meeting, double reach, Manifold<3>& manifold) {
     const Line a = line_along(meeting.a, normal), b = line_along(meeting.b, -normal);
     const Vec3 u = a.to - a.from, v = b.to - b.from;
     const double u_length = length(u), v_length = length(v);
-    if (std::fabs(dot(u, normal)) > parallel_sine * u_length || std::fabs(dot(v, normal)) > parallel_sine * v_length ||
+    if (std::fabs(dot(u, normal)) > parallel_sine * u_length ||
+        std::fabs(dot(v, normal)) > parallel_sine * v_length ||
         length(cross(u, v)) > parallel_sine * u_length * v_length || u_length == 0 || v_length == 0) {
         return false;
     }
@@ -286,8 +297,8 @@ bool edge_patch(const Meeting& meeting, double reach, Manifold<3>& manifold) {
         if (gap - radii > reach) continue;
         const Vec3 middle = 0.5 * (on_a + on_b + (meeting.radius_a - meeting.radius_b) * normal);
         const std::uint32_t feature = feature_of(meeting, source_of(false, a.side), source_of(true, b.side));
-        manifold.points[static_cast<std::size_t>(manifold.count++)] = {middle, gap - radii,
-                                                                       feature ^ (place == low ? 0u : 0x8080u)};
+        manifold.points[static_cast<std::size_t>(manifold.count++)] = {
+            middle, gap - radii, feature ^ (place == low ? 0u : 0x8080u)};
     }
     return meeting.confirms(least) && manifold.count > 0;
 }

@@ -31,12 +31,12 @@ Nearest3 widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Trans
     return widest;
 }
 
-/// Do the arcs of the Gauss map, from a's normal `left` to `right` and between the opposites of b's, cross? If
-/// not, the two edges make no face of the difference a − b. Along its left face's boundary an edge runs in the
-/// direction of left × right, so the edges serve for the products of the normals (Gregorius, The Separating Axis
-/// Test between Convex Polyhedra, 2013).
-bool arcs_cross(const Vec3& edge_a, const Vec3& left_a, const Vec3& right_a, const Vec3& edge_b, const Vec3& left_b,
-                const Vec3& right_b) {
+/// Do the arcs of the Gauss map, from a's normal `left` to `right` and between the opposites of b's, cross?
+/// If not, the two edges make no face of the difference a − b. Along its left face's boundary an edge runs in
+/// the direction of left × right, so the edges serve for the products of the normals (Gregorius, The
+/// Separating Axis Test between Convex Polyhedra, 2013).
+bool arcs_cross(const Vec3& edge_a, const Vec3& left_a, const Vec3& right_a, const Vec3& edge_b,
+                const Vec3& left_b, const Vec3& right_b) {
     const double left_of_b = dot(left_b, edge_a);
     if (left_of_b * dot(right_b, edge_a) >= 0) return false;
     const double right_of_a = dot(right_a, edge_b);
@@ -55,7 +55,8 @@ Nearest3 widest_over_edges(const Polyhedron& a, const Polyhedron& b, const Trans
         for (const Polyhedron::Edge& of_b : b.edges) {
             const Vec3& start_b = b.vertices[of_b.from];
             const Vec3 edge_b = b.vertices[of_b.to] - start_b;
-            if (!arcs_cross(edge_a, left_a, right_a, edge_b, b.normals[of_b.left], b.normals[of_b.right])) continue;
+            if (!arcs_cross(edge_a, left_a, right_a, edge_b, b.normals[of_b.left], b.normals[of_b.right]))
+                continue;
             Vec3 normal = cross(edge_a, edge_b);
             const double size = length(normal);
             if (size <= 1e-7 * length(edge_a) * length(edge_b)) continue;
@@ -97,7 +98,8 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
 
 Nearest3 made_certain(const Pair3& pair, const Nearest3& found) {
     if (found.certain) return found;
-    // Cores that overlap are first moved apart along the normal: then their closest points face each other along it.
+    // Cores that overlap are first moved apart along the normal: then their closest points face each other
+    // along it.
     const double extent = core_extent(pair.a) + core_extent(pair.b);
     const Vec3 shift = found.distance > 0 ? Vec3{} : (1e-3 * extent - found.distance) * found.normal;
     const Transform3 moved{pair.b_in_a.position + shift, pair.b_in_a.rotation};
@@ -116,13 +118,18 @@ Nearest3 made_certain(const Pair3& pair, const Nearest3& found) {
 
 double core_extent(const Shape<3>& shape) {
     switch (shape.kind) {
-        case ShapeKind::capsule: return length(shape.b - shape.a);
-        case ShapeKind::box: return length(shape.b);
-        case ShapeKind::hull: return length(shape.core->vertices.back() - shape.core->vertices.front());
+        case ShapeKind::capsule:
+            return length(shape.b - shape.a);
+        case ShapeKind::box:
+            return length(shape.b);
+        case ShapeKind::hull:
+            return length(shape.core->vertices.back() - shape.core->vertices.front());
         case ShapeKind::cylinder:
-        case ShapeKind::cone: return shape.radius + shape.half_height;
+        case ShapeKind::cone:
+            return shape.radius + shape.half_height;
         case ShapeKind::ball:
-        case ShapeKind::plane: return 0;
+        case ShapeKind::plane:
+            return 0;
     }
     return 0;
 }

@@ -48,8 +48,8 @@ void offer_faces(Candidates& candidates, const Shape<3>& shape, const Rotation3&
     }
 }
 
-/// Directions in which such shapes often rest on each other: along flat faces, across two axes, and straight away
-/// from an axis.
+/// Directions in which such shapes often rest on each other: along flat faces, across two axes, and straight
+/// away from an axis.
 Candidates likely_directions(const Pair3& pair) {
     Candidates candidates(pair);
     const Rotation3& turn = pair.b_in_a.rotation;
@@ -62,9 +62,9 @@ Candidates likely_directions(const Pair3& pair) {
     return candidates;
 }
 
-/// Sharpens the direction of the widest gap. With b moved along the direction until the cores are `clearance` apart,
-/// their closest points give a better one: where they overlap, the error shrinks each time by about clearance over
-/// radius of curvature. Where flat faces meet, the first step is exact.
+/// Sharpens the direction of the widest gap. With b moved along the direction until the cores are `clearance`
+/// apart, their closest points give a better one: where they overlap, the error shrinks each time by about
+/// clearance over radius of curvature. Where flat faces meet, the first step is exact.
 Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance, int most_steps) {
     Nearest3 best = gap_along(pair, start);
     for (int i = 0; i < most_steps; ++i) {
@@ -76,23 +76,24 @@ Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance, int m
         best.on_b = found.on_b - shift;
         const double gap = gap_along(pair, found.axis).distance;
         if (gap <= best.distance) break;
+        const bool settled = gap - best.distance <= 1e-5 * std::fabs(gap);
         best.normal = found.axis;
         best.distance = gap;
+        if (settled) break;
     }
     return best;
 }
 
 /// Cheaply, to within a hundredth of the depth.
 Nearest3 nearly(const Pair3& pair, const Search3& search, const Candidates& likely, double extent) {
-    const double tolerance = 1e-2 * std::fabs(likely.widest().distance) + 1e-5 * extent;
-    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely.widest(), tolerance);
+    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely.widest(), 1e-5 * extent, 1e-2);
     if (widest.distance > search.limit) return gap_along(pair, widest.normal);
     if (likely.is_of_face() && widest.distance == likely.widest().distance) {
         Nearest3 nearest = gap_along(pair, widest.normal);
         nearest.certain = false;
         return nearest;
     }
-    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 2);
+    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 4);
 }
 
 /// As well as rounding allows.
@@ -107,14 +108,15 @@ Nearest3 exactly(const Pair3& pair, const Gap3& likely, double extent) {
         // Rounding blurs the direction between closest points that all but touch.
         if (gap > guess.distance) guess = {found.axis, gap};
     }
-    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, guess, 1e-7 * extent);
+    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, guess, 1e-7 * extent, 0);
     return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 16);
 }
 
 }  // namespace
 
 Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
-    const double extent = is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
+    const double extent =
+        is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
     const Candidates likely = likely_directions(pair);
     if (likely.widest().distance > search.limit) return gap_along(pair, likely.widest().normal);
     return search.steady ? nearly(pair, search, likely, extent) : exactly(pair, likely.widest(), extent);

@@ -1,15 +1,60 @@
 // What the view should hold at the start: where things move, with some of what they stand on.
 
-import { Body, Recording, Shape, Vector } from "./recording";
+import { Body, Recording, Shape, Vector, rotateBack } from "./recording";
 
 export interface Bounds {
     low: Vector;
     high: Vector;
 }
 
-/** How far a shape reaches from its body's centre of mass; infinite for planes. */
-export function reach(body: Body, shape: Shape): number {
-    const length = (v: Vector) => Math.hypot(...v);
+const length = (v: Vector) => Math.hypot(...v);
+const dot = (a: Vector, b: Vector) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+
+/** How far a shape goes along a unit direction, both in its own frame; infinite for planes. */
+function support(shape: Shape, direction: Vector): number {
+    switch (shape.type) {
+        case "ball": return shape.radius;
+        case "box": return dot(shape.size, direction.map(Math.abs)) / 2;
+        case "capsule": return Math.max(dot(shape.from, direction), dot(shape.to, direction)) + shape.radius;
+        case "hull": return Math.max(...shape.points.map((p) => dot(p, direction))) + shape.rounding;
+        case "cylinder":
+        case "cone": {
+            const across = shape.radius * Math.hypot(direction[0], direction[2]);
+            const along = (shape.height / 2) * direction[1];
+            return shape.type === "cylinder" ? across + Math.abs(along) : Math.max(across - along, along);
+        }
+        case "plane": return Infinity;
+    }
+}
+
+/** The bounds of a body in a frame, along each axis. */
+function bodyBounds(recording: Recording, index: number, frame: number): Bounds {
+    const body = recording.bodies[index];
+    const flat = recording.dimension === 2;
+    const turn = (rotation: Vector, v: Vector) => (flat ? rotateBack2(rotation[0], v) : rotateBack(rotation, v));
+    const { rotation } = recording.state(index, frame * recording.header.step);
+    const bounds: Bounds = { low: [], high: [] };
+    for (let axis = 0; axis < recording.dimension; ++axis) {
+        const along = Array.from({ length: recording.dimension }, (_, i) => (i === axis ? 1 : 0));
+        const inBody = turn(rotation, along);
+        const ends = body.shapes.map((shape) => {
+            const inShape = turn(flat ? [shape.angle ?? 0] : (shape.rotation ?? [0, 0, 0, 1]), inBody);
+            const middle = dot(shape.center, inBody) - dot(body.center_of_mass, inBody);
+            return [middle - support(shape, inShape.map((v) => -v)), middle + support(shape, inShape)];
+        });
+        const center = recording.coordinate(index, frame, axis);
+        bounds.low.push(center + ends.reduce((least, [low]) => Math.min(least, low), 0));
+        bounds.high.push(center + ends.reduce((most, [, high]) => Math.max(most, high), 0));
+    }
+    return bounds;
+}
+
+function rotateBack2(angle: number, [x, y]: Vector): Vector {
+    return [x * Math.cos(angle) + y * Math.sin(angle), y * Math.cos(angle) - x * Math.sin(angle)];
+}
+
+/** How far a shape reaches from its body's centre of mass at most; infinite for planes. */
+function reach(body: Body, shape: Shape): number {
     const away = length(shape.center.map((value, i) => value - body.center_of_mass[i]));
     switch (shape.type) {
         case "ball": return away + shape.radius;
@@ -26,54 +71,78 @@ export function reachOf(body: Body): number {
     return body.shapes.reduce((most, shape) => Math.max(most, reach(body, shape)), 0);
 }
 
-/** Bounds along one axis that a few strays cannot stretch: at most half again beyond the middle 98 %. */
-function robust(unsorted: number[]): [number, number] {
-    const values = Float64Array.from(unsorted).sort();
-    const at = (share: number) => values[Math.round(share * (values.length - 1))];
-    const spread = at(0.99) - at(0.01);
-    const slack = spread * 0.5;
-    return [Math.max(values[0], at(0.01) - slack), Math.min(values[values.length - 1], at(0.99) + slack)];
+const least = (values: number[]) => values.reduce((a, b) => Math.min(a, b));
+const most = (values: number[]) => values.reduce((a, b) => Math.max(a, b));
+
+/** Where the moving bodies are in some frames, and how far each one gets. */
+class Ways {
+    readonly samples: number[] = [];
+    readonly starts: number[] = [];
+    readonly ends: number[] = [];
+
+    /** Bounds along one axis that strays cannot stretch: where bodies start and where most of them are, and
+     *  beyond that what goes no further than half of its size. */
+    bounds(): [number, number] {
+        const values = Float64Array.from(this.samples).sort();
+        const at = (share: number) => values[Math.round(share * (values.length - 1))];
+        const low = least([at(0.02), ...this.starts]);
+        const high = most([at(0.98), ...this.starts]);
+        const slack = Math.max(0.5 * (high - low), 1e-3);
+        const near = this.ends.filter((end) => end >= low - slack && end <= high + slack);
+        return [least([low, ...near]), most([high, ...near])];
+    }
+}
+
+function waysOf(recording: Recording, bodies: number[]): Ways[] {
+    const { frames, dimension } = recording;
+    const stride = Math.max(1, Math.ceil((bodies.length * frames) / 50_000));
+    const axes = Array.from({ length: dimension }, () => new Ways());
+    for (const body of bodies) {
+        const size = reachOf(recording.bodies[body]);
+        if (!Number.isFinite(size)) continue;
+        axes.forEach((ways, axis) => {
+            let [low, high] = [Infinity, -Infinity];
+            for (let frame = 0; frame < frames; frame += stride) {
+                if (!recording.isPresent(body, frame)) continue;
+                const value = recording.coordinate(body, frame, axis);
+                if (low === Infinity) ways.starts.push(value - size, value + size);
+                ways.samples.push(value - size, value + size);
+                low = Math.min(low, value - size);
+                high = Math.max(high, value + size);
+            }
+            if (low < high) ways.ends.push(low, high);
+        });
+    }
+    return axes;
 }
 
 export function contentBounds(recording: Recording): Bounds {
-    const { bodies, frames, dimension } = recording;
-    const moving = bodies.map((_, i) => i).filter((i) => bodies[i].type !== "fixed");
-    const stride = Math.max(1, Math.ceil((moving.length * frames) / 50_000));
-    const axes: number[][] = Array.from({ length: dimension }, () => []);
-    const collect = (body: number, frame: number) => {
-        if (!recording.isPresent(body, frame)) return;
-        const size = reachOf(bodies[body]);
-        for (let axis = 0; axis < dimension; ++axis) {
-            const value = recording.coordinate(body, frame, axis);
-            axes[axis].push(value - size, value + size);
-        }
-    };
-    for (const body of moving) for (let frame = 0; frame < frames; frame += stride) collect(body, frame);
+    const { bodies, dimension } = recording;
+    const all = bodies.map((_, i) => i);
+    let ways = waysOf(recording, all.filter((i) => bodies[i].type !== "fixed"));
     // A world in which nothing moves shows what stands in it.
-    if (axes[0].length === 0)
-        bodies.forEach((body, i) => Number.isFinite(reachOf(body)) && frames > 0 && collect(i, 0));
-    if (axes[0].length === 0) return { low: Array(dimension).fill(-5), high: Array(dimension).fill(5) };
-    const ranges = axes.map(robust);
-    const bounds = { low: ranges.map((r) => r[0]), high: ranges.map((r) => r[1]) };
+    if (ways[0].ends.length === 0) ways = waysOf(recording, all);
+    if (ways[0].ends.length === 0) return { low: Array(dimension).fill(-5), high: Array(dimension).fill(5) };
+    const ranges = ways.map((one) => one.bounds());
+    const bounds = { low: ranges.map(([low]) => low), high: ranges.map(([, high]) => high) };
     addNearFixed(recording, bounds);
     return bounds;
 }
 
-/** Fixed things of about the size of what moves, beside it, belong to the picture. */
+/** Of what is fixed, things no larger than all that moves and beside it belong to the picture; of greater
+ *  ones, as much as lies close by. */
 function addNearFixed(recording: Recording, bounds: Bounds) {
-    const size = Math.max(...bounds.high.map((high, i) => high - bounds.low[i]));
+    const size = most(bounds.high.map((high, i) => high - bounds.low[i]));
     const own = { low: [...bounds.low], high: [...bounds.high] };
     recording.bodies.forEach((body, index) => {
-        const radius = reachOf(body);
-        if (body.type !== "fixed" || recording.frames === 0 || radius > 0.6 * size) return;
-        const place = own.low.map((_, axis) => recording.coordinate(index, 0, axis));
-        const near = place.every(
-            (value, i) => value + radius > own.low[i] - size / 4 && value - radius < own.high[i] + size / 4,
-        );
+        if (body.type !== "fixed" || !recording.isPresent(index, 0)) return;
+        const { low, high } = bodyBounds(recording, index, 0);
+        const near = low.every((value, i) => value < own.high[i] + size / 4 && high[i] > own.low[i] - size / 4);
         if (!near) return;
-        place.forEach((value, i) => {
-            bounds.low[i] = Math.min(bounds.low[i], value - radius);
-            bounds.high[i] = Math.max(bounds.high[i], value + radius);
+        const margin = low.some((value, i) => high[i] - value > 1.2 * size) ? 0.06 * size : Infinity;
+        low.forEach((value, i) => {
+            bounds.low[i] = Math.min(bounds.low[i], Math.max(value, own.low[i] - margin));
+            bounds.high[i] = Math.max(bounds.high[i], Math.min(high[i], own.high[i] + margin));
         });
     });
 }

@@ -221,7 +221,7 @@ export class Recording {
 }
 
 /** A vector of the world as the body that is turned by the unit quaternion `q` sees it. */
-function rotateBack(q: Vector, v: Vector): Vector {
+export function rotateBack(q: Vector, v: Vector): Vector {
     const [x, y, z, w] = [-q[0], -q[1], -q[2], q[3]];
     const t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])];
     return [

@@ -146,7 +146,7 @@ export class Scene3 implements Scene {
         surfaceUniforms.edgeStrength.value = dark ? 0.5 : 0.42;
         surfaceUniforms.gridStrength.value = dark ? 0.4 : 0.28;
         for (const material of this.surfaces.values())
-            (material as MeshStandardMaterial).envMapIntensity = dark ? 0.35 : 0.55;
+            (material as MeshStandardMaterial).envMapIntensity = dark ? 0.35 : 0.5;
         for (const marks of [this.links, this.selection, this.contactMarks]) marks?.setTheme(theme);
         for (const { mesh } of this.planes)
             (mesh.material as MeshStandardMaterial).color.setRGB(...theme.neutral, "srgb");
@@ -348,7 +348,7 @@ export class Scene3 implements Scene {
             distance = Math.max(distance, depth + Math.abs(corner.dot(right)) / slopeX, depth + Math.abs(corner.dot(above)) / slopeY);
         }
         this.controls.target.copy(center);
-        this.camera.position.copy(center).addScaledVector(direction, (distance * 1.03) / near);
+        this.camera.position.copy(center).addScaledVector(direction, (distance * 0.92) / near);
         this.controls.update();
     }
 
