@@ -28,8 +28,8 @@ struct Capsule {
     double radius = 0.5;  ///< m, positive
 };
 
-/// The convex hull of `points` (at least D + 1 that span an area or a volume), grown by `rounding`.
-/// A triangle is a hull of three points.
+/// The convex hull of `points` (at least D + 1 that span an area or a volume, at most 4096 in 3D), grown by
+/// `rounding`. A triangle is a hull of three points.
 template <int D>
 struct Hull {
     std::vector<Vec<D>> points{};  ///< m, in any order
@@ -64,7 +64,7 @@ using Hull3 = Hull<3>;
 using Plane2 = Plane<2>;
 using Plane3 = Plane<3>;
 
-/// One of the shapes that exist in the dimension `D`.
+/// One of the shapes that exist in the dimension `D`. Lengths lie between 1e-9 and 1e9 m.
 template <int D>
 using Geometry =
     std::conditional_t<D == 2, std::variant<Ball, Box<2>, Capsule<2>, Hull<2>, Plane<2>>,

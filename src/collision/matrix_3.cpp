@@ -29,18 +29,18 @@ std::optional<Separation<3>> separate(const Shape<3>& a, const Shape<3>& b, cons
 template <NearestRoutine3 nearest>
 constexpr PairRoutines<3> by{collide<nearest>, separate<nearest>};
 constexpr PairRoutines<3> none{};  // two planes
-constexpr PairRoutines<3> swap{};  // looked up with the shapes exchanged
+constexpr PairRoutines<3> flip{};  // looked up with the shapes exchanged
 
 // clang-format off
 constexpr PairRoutines<3> matrix[7][7] = {
 // a \ b       ball             capsule              box                     hull                       cylinder            cone                plane
 /* ball */     {by<point_point>, by<point_segment>,   by<point_box>,          by<point_polyhedron>,      by<point_revolved>, by<point_revolved>, by<core_plane>},
-/* capsule */  {swap,            by<segment_segment>, by<segment_polyhedron>, by<segment_polyhedron>,    by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* box */      {swap,            swap,                by<box_box>,            by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* hull */     {swap,            swap,                swap,                   by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* cylinder */ {swap,            swap,                swap,                   swap,                      by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* cone */     {swap,            swap,                swap,                   swap,                      swap,               by<core_revolved>,  by<core_plane>},
-/* plane */    {swap,            swap,                swap,                   swap,                      swap,               swap,               none},
+/* capsule */  {flip,            by<segment_segment>, by<segment_polyhedron>, by<segment_polyhedron>,    by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* box */      {flip,            flip,                by<box_box>,            by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* hull */     {flip,            flip,                flip,                   by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* cylinder */ {flip,            flip,                flip,                   flip,                      by<core_revolved>,  by<core_revolved>,  by<core_plane>},
+/* cone */     {flip,            flip,                flip,                   flip,                      flip,               by<core_revolved>,  by<core_plane>},
+/* plane */    {flip,            flip,                flip,                   flip,                      flip,               flip,               none},
 };
 // clang-format on
 

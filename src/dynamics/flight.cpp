@@ -179,7 +179,7 @@ void verlet(const Flight<D>& f) {
             precess(s, m, first[i].torque, h);
         }
     }
-    f.model.sum({f.states, f.masses}, f.time + h, f.loads);
+    f.model.sum({f.states, f.masses}, f.time, f.loads);
     for (const std::uint32_t i : f.bodies) {
         if (!f.varies[i]) continue;
         BodyState<D>& s = f.states[i];
@@ -220,7 +220,7 @@ void rk4(const Flight<D>& f) {
                 precess(s, m, loads[stage - 1][j].torque, ch);
             }
         }
-        if (stage > 0) f.model.sum({f.states, f.masses}, f.time + ch, f.loads);
+        if (stage > 0) f.model.sum({f.states, f.masses}, f.time, f.loads);
         for (const std::uint32_t i : f.bodies) {
             loads[stage].push_back(f.loads[i]);
             k[stage].push_back(pull(f.states[i], f.masses[i], f.loads[i]));

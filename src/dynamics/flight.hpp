@@ -30,7 +30,7 @@ struct Flight {
     std::span<Load<D>> loads;              ///< at the start of the step; overwritten by later stages
     std::span<const std::uint8_t> varies;  ///< whether a body's load depends on its motion
     const LoadModel<D>& model;
-    double time;
+    double time;  ///< at the start; what acts then acts through the whole step
     double step;
 };
 

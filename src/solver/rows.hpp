@@ -62,6 +62,7 @@ struct ContactRows {
     std::array<F, D == 2 ? 1 : 3>
         patch_mass{};  ///< 2D: effective mass; 3D: inverse of the 2×2 system (xx, xy, yy)
     std::array<F, D - 1> friction_impulse{};
+    std::array<F, D - 1> total_friction{};  ///< sum over the sub-steps
     F roundness_a{}, roundness_b{};
     F friction{};
     F twist_mass{}, twist_impulse{};  ///< 3D

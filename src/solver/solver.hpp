@@ -79,6 +79,7 @@ class Solver {
     void integrate_velocities();
     template <bool biased>
     void solve();
+    void settle_struck();
     void integrate_positions();
     void finish_substep();
     void bounce(const SolverInput<D>& input);
@@ -95,7 +96,9 @@ class Solver {
     std::vector<Drive> drives_;
     std::vector<Pair> pairs_;
     std::vector<Rows> rows_;
-    std::vector<Impact> impacts_;  ///< points with restitution
+    std::vector<std::uint8_t> settled_;  ///< by row: has it carried an impulse?
+    std::vector<std::uint32_t> struck_;  ///< rows that carry their first impulse in this sub-step
+    std::vector<Impact> impacts_;        ///< points with restitution
 };
 
 }  // namespace carom::detail

@@ -26,6 +26,16 @@ const Rotation3 upright{};
 const Rotation3 upside_down = Rotation3::from_axis_angle({1, 0, 0}, 3.14159265358979323846);
 const Rotation3 along_z = Rotation3::from_axis_angle({1, 0, 0}, 0.5 * 3.14159265358979323846);
 
+std::vector<Vec3> wheel_corners(int count, double half_height, double radius) {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < count; ++i) {
+        const Vec3 out = rotate(Rotation3::from_axis_angle({0, 1, 0}, 2 * 3.14159265358979323846 * i / count),
+                                Vec3{radius, 0, 0});
+        for (const double y : {-half_height, half_height}) corners.push_back({out.x, y, out.z});
+    }
+    return corners;
+}
+
 std::vector<Vec3> prism_corners(double half_height, double radius) {
     std::vector<Vec3> corners;
     for (const Vec2& p : {Vec2{1, 0}, {0.5, 0.8}, {-0.5, 0.8}, {-1, 0}, {-0.5, -0.8}, {0.5, -0.8}}) {
@@ -155,6 +165,8 @@ std::vector<Touching> touching() {
         {"equal rounded boxes", rounded, rounded, here, at(0, 1, 0), 4},
         {"equal prisms", prism, prism, here, at(0, 0.8, 0), 4},
         {"prism on a cube of its width", cube, prism, here, at(0, 0.9, 0), 4},
+        {"wheels with more corners than there is room for", Hull3{wheel_corners(150, 0.2, 1)},
+         Hull3{wheel_corners(140, 0.2, 1)}, here, at(0.3, 0.4, 0.1), 4},
         {"planks, crossed", plank, plank, here, at(0.2, 0.1, 0.1, about_y(1.2)), 4},
         {"planks, far out", plank, plank, here, at(1.9, 0.1, 0, about_y(1.57079632679489662)), 4},
         {"small cube on a large one's edge", Box3{{4, 1, 4}}, Box3{{0.2, 0.2, 0.2}}, here, at(2, 0.6, 0.3),
@@ -206,6 +218,27 @@ TEST(Resting3, StacksKeepTheirPointsAndFeatures) {
             EXPECT_EQ(features(found), first) << "features stay the same, depth " << depth;
         }
     }
+}
+
+/// Equal cubes, the upper one shifted by half its width and tilted about the z axis. Tilted one way its lower
+/// face is the one that parts the two best, tilted the other way the lower cube's upper face.
+Manifold<3> tilted_cubes(double angle) {
+    const Geometry<3> cube = Box3{{1, 1, 1}};
+    const Transform3 placed{{0.5, 0.999, 0}, Rotation3::from_axis_angle({0, 0, 1}, angle)};
+    return collide<3>(cube, {}, cube, placed, 0.01);
+}
+
+TEST(Resting3, PointsKeepTheirNamesWhenTheOtherFaceIsClipped) {
+    const Manifold<3> on_lower = tilted_cubes(1e-3), on_upper = tilted_cubes(-1e-3);
+    EXPECT_EQ(on_lower.normal, (Vec3{0, 1, 0}));
+    EXPECT_NEAR(on_upper.normal.x, 1e-3, 1e-9);
+    EXPECT_EQ(on_lower.count, 4);
+    EXPECT_EQ(features(on_lower), features(on_upper));
+}
+
+TEST(Resting3, OfFacesThatAreNearlyAsGoodTheFirstShapesIsTaken) {
+    for (const double angle : {-1e-5, -1e-7, 0.0, 1e-7, 1e-5})
+        EXPECT_EQ(tilted_cubes(angle).normal, (Vec3{0, 1, 0}));
 }
 
 }  // namespace

@@ -217,7 +217,7 @@ TYPED_TEST(Contacts, MovedBodiesAreAllThatAGameNeeds) {
     add(12, lift);
     lift.velocity = {};
     add(13, lift);
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < 900; ++i) {
         world.step(frame_time);
         for (const MovedBody<D>& moved : world.moved_bodies()) {
             ASSERT_EQ(objects[moved.user_data].body, moved.body);

@@ -131,8 +131,9 @@ TYPED_TEST(Loads, AConstantForceActsInItsWindow) {
         run(world, 45);
         EXPECT_LT(length(world.velocity(body) - vec<D>(1.5, 3)), 1e-12) << static_cast<int>(integrator);
         const double place = 1.5 * 0.25 + 0.5 * 3 * 0.25;  // ½ a t², then v t
-        const double h = integrator == Integrator::explicit_euler ? frame_time : 1e-9;
-        EXPECT_NEAR(world.position(body).x, place, 3 * h) << static_cast<int>(integrator);
+        // Explicit Euler is a step late, and the stages of rk4 look over the edges of the window.
+        const bool exact = integrator == Integrator::semi_implicit_euler || integrator == Integrator::verlet;
+        EXPECT_NEAR(world.position(body).x, place, exact ? 1e-12 : frame_time) << static_cast<int>(integrator);
     }
 }
 
@@ -189,7 +190,7 @@ TYPED_TEST(Loads, LinearDragHasATerminalVelocity) {
     const double terminal = 2 * 9.81 / 4;
     run(world, 500, 1e-3);
     EXPECT_NEAR(-world.velocity(body).y, terminal * (1 - std::exp(-2 * 0.5)), 5e-3);
-    run(world, 600);
+    run(world, 900);
     EXPECT_NEAR(-world.velocity(body).y, terminal, 1e-9);
 }
 

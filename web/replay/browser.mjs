@@ -5,7 +5,8 @@ import { chromium } from "playwright-core";
 
 export const program = process.env.CHROMIUM ?? "/usr/bin/chromium";
 
-export async function launch() {
+/** `driver` is what ANGLE draws with: "swiftshader", or "null", which draws nothing. */
+export async function launch(driver = "swiftshader") {
     await access(program).catch(() => {
         throw new Error(`no browser at ${program}: install Debian's package chromium, or let CHROMIUM name one`);
     });
@@ -16,7 +17,7 @@ export async function launch() {
             "--no-sandbox",
             "--disable-gpu",
             "--use-gl=angle",
-            "--use-angle=swiftshader",
+            `--use-angle=${driver}`,
             "--enable-unsafe-swiftshader",
             "--disable-quic",
             "--no-first-run",

@@ -99,7 +99,9 @@ void disk_facet(const Shape<3>& shape, const Vec3& normal, const Vec3& direction
                                                                0};
     constexpr double flat = 2e-5;
     const Vec3 slope = direction - dot(direction, normal) * normal;
-    const Vec3 u = length(slope) > flat ? normalized(slope) : any_perpendicular(shape.b);
+    const bool tilted = length(slope) > flat;
+    const Vec3 u = tilted ? normalized(slope) : any_perpendicular(shape.b);
+    if (tilted) facet.id += 4;
     const Vec3 center = shape.a + shape.half_height * normal;
     facet.corners.clear();
     facet.corners.reserve(disk_corners);

@@ -150,7 +150,7 @@ int greatest(const Points& points, const Measure& measure) {
     const auto first = std::find_if(points.begin(), points.end(), [&](const ManifoldPoint<3>& point) {
         return measure(point) >= high - 1e-3 * (high - low);
     });
-    return static_cast<int>(first - points.begin());
+    return first == points.end() ? 0 : static_cast<int>(first - points.begin());
 }
 
 /// Picks four points that keep the area of all, the deepest among them. The choice begins at a fixed
@@ -235,7 +235,8 @@ bool face_patch(const Meeting& meeting, bool base_is_b, double reach, Manifold<3
         const double gap = dot(base.normal, p) - base.offset;
         least = std::min(least, gap);
         if (gap - radii > reach) continue;
-        // The two faces run round the patch in opposite senses; an edge, which has but two corners, in both.
+        // The two faces run round the patch in opposite senses, so the order of the sides does not count;
+        // that of an edge does, as its two corners have the same two.
         std::uint32_t before = kept[(i + kept.size() - 1) % kept.size()].side, after = kept[i].side;
         if (!flat_is_edge && before > after) std::swap(before, after);
         points.push_back(

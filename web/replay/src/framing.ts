@@ -7,6 +7,11 @@ export interface Bounds {
     high: Vector;
 }
 
+/** What the view should hold: bounds, and balls (a point and a radius) that fill them more closely. */
+export interface Content extends Bounds {
+    balls: { center: Vector; radius: number }[];
+}
+
 const length = (v: Vector) => Math.hypot(...v);
 const dot = (a: Vector, b: Vector) => a.reduce((sum, value, i) => sum + value * b[i], 0);
 
@@ -116,33 +121,52 @@ function waysOf(recording: Recording, bodies: number[]): Ways[] {
     return axes;
 }
 
-export function contentBounds(recording: Recording): Bounds {
+export function contentOf(recording: Recording): Content {
     const { bodies, dimension } = recording;
     const all = bodies.map((_, i) => i);
-    let ways = waysOf(recording, all.filter((i) => bodies[i].type !== "fixed"));
+    let shown = all.filter((i) => bodies[i].type !== "fixed");
+    let ways = waysOf(recording, shown);
     // A world in which nothing moves shows what stands in it.
-    if (ways[0].ends.length === 0) ways = waysOf(recording, all);
-    if (ways[0].ends.length === 0) return { low: Array(dimension).fill(-5), high: Array(dimension).fill(5) };
+    if (ways[0].ends.length === 0) ways = waysOf(recording, (shown = all));
+    if (ways[0].ends.length === 0)
+        return { low: Array(dimension).fill(-5), high: Array(dimension).fill(5), balls: [] };
     const ranges = ways.map((one) => one.bounds());
-    const bounds = { low: ranges.map(([low]) => low), high: ranges.map(([, high]) => high) };
-    addNearFixed(recording, bounds);
-    return bounds;
+    const content = { low: ranges.map(([low]) => low), high: ranges.map(([, high]) => high), balls: [] };
+    addMoving(recording, shown, content);
+    addNearFixed(recording, content);
+    return content;
+}
+
+/** Where bodies are in some frames, as far as that lies within the bounds. */
+function addMoving(recording: Recording, shown: number[], content: Content) {
+    const stride = Math.max(1, Math.ceil((shown.length * recording.frames) / 4000));
+    for (const body of shown) {
+        const radius = reachOf(recording.bodies[body]);
+        for (let frame = body % stride; frame < recording.frames; frame += stride) {
+            if (!recording.isPresent(body, frame)) continue;
+            const center = content.low.map((_, axis) => recording.coordinate(body, frame, axis));
+            const inside = center.every((v, i) => v - radius >= content.low[i] && v + radius <= content.high[i]);
+            if (inside) content.balls.push({ center, radius });
+        }
+    }
 }
 
 /** Of what is fixed, things no larger than all that moves and beside it belong to the picture; of greater
  *  ones, as much as lies close by. */
-function addNearFixed(recording: Recording, bounds: Bounds) {
-    const size = most(bounds.high.map((high, i) => high - bounds.low[i]));
-    const own = { low: [...bounds.low], high: [...bounds.high] };
+function addNearFixed(recording: Recording, content: Content) {
+    const size = most(content.high.map((high, i) => high - content.low[i]));
+    const own = { low: [...content.low], high: [...content.high] };
     recording.bodies.forEach((body, index) => {
         if (body.type !== "fixed" || !recording.isPresent(index, 0)) return;
         const { low, high } = bodyBounds(recording, index, 0);
         const near = low.every((value, i) => value < own.high[i] + size / 4 && high[i] > own.low[i] - size / 4);
         if (!near) return;
         const margin = low.some((value, i) => high[i] - value > 1.2 * size) ? 0.06 * size : Infinity;
-        low.forEach((value, i) => {
-            bounds.low[i] = Math.min(bounds.low[i], Math.max(value, own.low[i] - margin));
-            bounds.high[i] = Math.max(bounds.high[i], Math.min(high[i], own.high[i] + margin));
-        });
+        const from = low.map((value, i) => Math.max(value, own.low[i] - margin));
+        const to = high.map((value, i) => Math.min(value, own.high[i] + margin));
+        content.low = content.low.map((value, i) => Math.min(value, from[i]));
+        content.high = content.high.map((value, i) => Math.max(value, to[i]));
+        for (let corner = 0; corner < 2 ** low.length; ++corner)
+            content.balls.push({ center: from.map((value, i) => ((corner >> i) & 1 ? to[i] : value)), radius: 0 });
     });
 }

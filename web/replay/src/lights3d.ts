@@ -24,9 +24,9 @@ export class Lights extends Group {
         const dark = theme.name === "dark";
         this.sky.color.set(dark ? "#b9c8e6" : "#ffffff");
         this.sky.groundColor.set(dark ? "#2b2a33" : "#b3a899");
-        this.sky.intensity = dark ? 0.8 : 0.85;
+        this.sky.intensity = dark ? 0.95 : 0.85;
         this.sun.color.set(dark ? "#fff1dc" : "#fff7ea");
-        this.sun.intensity = dark ? 2.1 : 1.75;
+        this.sun.intensity = dark ? 2.3 : 1.75;
     }
 
     /** Spans the shadow over a sphere. It grows and moves in steps, else the shadows' edges would crawl. */

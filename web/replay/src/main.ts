@@ -18,14 +18,6 @@ import { Timeline } from "./timeline";
 
 const byId = (id: string) => document.getElementById(id)!;
 
-/** Milliseconds that each part of a picture took on the processor, smoothed. */
-class Meter {
-    value = 0;
-    add(milliseconds: number) {
-        this.value = this.value === 0 ? milliseconds : this.value * 0.95 + milliseconds * 0.05;
-    }
-}
-
 class Page {
     readonly player: Player;
     private readonly scene: Scene;
@@ -36,8 +28,6 @@ class Page {
     private readonly contactsButton: HTMLButtonElement;
     private readonly themeButton: HTMLButtonElement;
     private readonly panelButton: HTMLButtonElement;
-    private readonly updating = new Meter();
-    private readonly drawing = new Meter();
     private contacts: Promise<Contacts> | null = null;
     private contactsShown = false;
     private contactsDrawn = 0;
@@ -115,6 +105,7 @@ class Page {
         if (this.stale) this.draw();
     }
 
+    /** Returns the milliseconds that it took to move everything, and to draw it. */
     draw() {
         this.stale = false;
         const { time } = this.player;
@@ -124,9 +115,8 @@ class Page {
         this.scene.draw();
         this.plot.draw(time);
         this.inspector.update(time);
-        this.updating.add(updated - begin);
-        this.drawing.add(performance.now() - updated);
         ++this.drawn;
+        return { update: updated - begin, draw: performance.now() - updated };
     }
 
     private resize() {
@@ -222,8 +212,6 @@ class Page {
                 frames: this.player.frames,
                 drawn: this.drawn,
                 decodeMs: this.decodeMs,
-                updateMs: this.updating.value,
-                drawMs: this.drawing.value,
                 contacts: this.contactsDrawn,
                 ...this.scene.cost(),
             }),

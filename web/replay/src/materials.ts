@@ -35,6 +35,21 @@ const known: [RegExp, string, Finish][] = [
     [/pig/, "#86b957", "satin"],
 ];
 
+/** A colour that the name itself tells. */
+const colorWords: [RegExp, string][] = [
+    [/\bred\b/, "#d9534f"],
+    [/\borange\b/, "#e58a3c"],
+    [/\byellow\b/, "#e5bf3f"],
+    [/\bgreen\b/, "#6fa85a"],
+    [/\bblue\b/, "#5088dd"],
+    [/\b(purple|violet)\b/, "#8f74d6"],
+    [/\bpink\b/, "#df82ab"],
+    [/\bbrown\b/, "#94694a"],
+    [/\bblack\b/, "#565b66"],
+    [/\bwhite\b/, "#e6e6e3"],
+    [/\bgr[ae]y\b/, "#9298a1"],
+];
+
 /** For names that mean nothing to us: hues that stay apart from each other and from the greys. */
 const others = [
     "#5b8fe3", "#e0875a", "#62b08a", "#c06fb5", "#d6b04c", "#5fb3c6",
@@ -67,9 +82,16 @@ function hash(text: string): number {
 
 export function lookOf(name: string): Look {
     const lower = name.toLowerCase();
-    for (const [pattern, color, finish] of known)
-        if (pattern.test(lower)) return { color: parseColor(color), finish };
-    return { color: parseColor(others[hash(lower) % others.length]), finish: "satin" };
+    const material = known.find(([pattern]) => pattern.test(lower));
+    const finish = material?.[2] ?? "satin";
+    const word = colorWords.find(([pattern]) => pattern.test(lower));
+    if (word) return { color: parseColor(word[1]), finish };
+    if (!material) return { color: parseColor(others[hash(lower) % others.length]), finish };
+    // Granite and slate are stones both, but not the same: sorts of one material differ a little.
+    const plain = material[0].exec(lower)![0] === lower;
+    const shift = plain ? [0, 0, 0] : [0, 8, 16].map((bits) => (((hash(lower) >> bits) & 255) / 255 - 0.5) * 0.16);
+    const color = parseColor(material[1]).map((v, i) => Math.min(1, Math.max(0, v + shift[0] + shift[i] * 0.3)));
+    return { color: color as Look["color"], finish };
 }
 
 /** What a shape is coloured by: its material, or else the first words of its body's name. */
@@ -86,7 +108,7 @@ export function stateColor(
     neutral: [number, number, number],
     body: number,
 ): [number, number, number] {
-    if (type === "fixed") return mix(neutral, base, 0.16);
+    if (type === "fixed") return mix(neutral, base, 0.2);
     // Neighbours of one material differ by a little, so that a heap does not run together.
     const shade = 0.94 + 0.12 * ((hash(String(body)) & 255) / 255);
     const own = base.map((v) => Math.min(1, v * shade)) as [number, number, number];

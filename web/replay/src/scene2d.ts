@@ -2,7 +2,7 @@
 
 import { Camera2 } from "./camera2d";
 import { Contacts, contactsOf } from "./decode";
-import { Bounds, contentBounds, reachOf } from "./framing";
+import { Content, contentOf, reachOf } from "./framing";
 import { cssColor, lookOf, materialOf, mix, stateColor } from "./materials";
 import { Recording, Vector } from "./recording";
 import { Insets, Scene } from "./scene";
@@ -30,7 +30,7 @@ export class Scene2 implements Scene {
     onChange = () => {};
     private readonly context = this.element.getContext("2d")!;
     private readonly camera = new Camera2(this.element, () => this.onChange());
-    private readonly bounds: Bounds;
+    private readonly content: Content;
     private readonly items: Item[] = [];
     private readonly reaches: number[];
     private pixelRatio = 1;
@@ -42,7 +42,7 @@ export class Scene2 implements Scene {
     private time = 0;
 
     constructor(private readonly recording: Recording) {
-        this.bounds = contentBounds(recording);
+        this.content = contentOf(recording);
         this.reaches = recording.bodies.map(reachOf);
         const none = { fill: "", stroke: "", mark: "" };
         recording.bodies.forEach((body, index) =>
@@ -63,8 +63,8 @@ export class Scene2 implements Scene {
                 const base = stateColor(color, type, asleep, theme.neutral, item.body);
                 const line = mix(base, [...edge], theme.name === "dark" ? 0.28 : 0.34);
                 return {
-                    fill: cssColor(mix(base, theme.background, type === "fixed" ? 0.35 : 0.18), 0.9),
-                    stroke: cssColor(line, type === "fixed" ? 0.75 : 1),
+                    fill: cssColor(mix(base, theme.background, type === "fixed" ? 0.35 : 0.18), type === "fixed" ? 1 : 0.9),
+                    stroke: cssColor(type === "fixed" ? mix(line, theme.background, 0.25) : line),
                     mark: cssColor(line, 0.8),
                 };
             };
@@ -130,18 +130,14 @@ export class Scene2 implements Scene {
         const line = Math.min(1.6, Math.max(0.5, camera.scale / 24)) / camera.scale;
         context.lineJoin = "round";
         context.lineCap = "round";
-        for (const { body, shape, drawn, ...styles } of this.items) {
-            if (!this.visible(body)) continue;
-            const fixed = recording.bodies[body].type === "fixed";
-            const style = awake[body] || fixed ? styles.awake : styles.asleep;
+        const shown = this.items.filter(({ body }) => this.visible(body));
+        this.drawFixed(shown.filter(({ body }) => recording.bodies[body].type === "fixed"), line);
+        for (const { body, drawn, ...styles } of shown) {
+            if (!drawn || recording.bodies[body].type === "fixed") continue;
+            const style = awake[body] ? styles.awake : styles.asleep;
+            this.enterBody(body);
             context.fillStyle = style.fill;
             context.strokeStyle = style.stroke;
-            if (!drawn) {
-                context.setTransform(this.pixelRatio, 0, 0, this.pixelRatio, 0, 0);
-                drawPlane(context, camera, recording, body, shape);
-                continue;
-            }
-            this.enterBody(body);
             context.lineWidth = line;
             context.fill(drawn.outline);
             context.stroke(drawn.outline);
@@ -149,6 +145,33 @@ export class Scene2 implements Scene {
             context.strokeStyle = style.mark;
             context.lineWidth = line * 1.4;
             context.stroke(drawn.mark);
+        }
+    }
+
+    /** First all outlines, then all areas over their inner halves, a little grown: fixed shapes that touch
+     *  look like one. */
+    private drawFixed(items: Item[], line: number) {
+        const { context, camera } = this;
+        const overlap = 1 / camera.scale;
+        for (const { body, shape, drawn, awake } of items) {
+            context.strokeStyle = awake.stroke;
+            context.fillStyle = awake.fill;
+            if (drawn) {
+                this.enterBody(body);
+                context.lineWidth = 2 * line + overlap;
+                context.stroke(drawn.outline);
+            } else {
+                context.setTransform(this.pixelRatio, 0, 0, this.pixelRatio, 0, 0);
+                drawPlane(context, camera, this.recording, body, shape);
+            }
+        }
+        context.lineWidth = overlap;
+        for (const { body, drawn, awake } of items) {
+            if (!drawn) continue;
+            this.enterBody(body);
+            context.fillStyle = context.strokeStyle = awake.fill;
+            context.fill(drawn.outline);
+            context.stroke(drawn.outline);
         }
     }
 
@@ -273,7 +296,7 @@ export class Scene2 implements Scene {
     }
 
     fit() {
-        this.camera.fit(this.bounds);
+        this.camera.fit(this.content);
     }
 
     setView([near]: number[]) {

@@ -1,16 +1,16 @@
 // Space, drawn by three.js.
 
 import {
-    BufferAttribute, BufferGeometry, Color, Fog, Material, Matrix4, Mesh, MeshStandardMaterial, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Quaternion,
-    Raycaster, Scene as Space, Spherical, Texture, Vector2, Vector3, WebGLRenderer,
+    BufferAttribute, BufferGeometry, CanvasTexture, Color, Fog, Material, Matrix4, Mesh, MeshStandardMaterial, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Quaternion,
+    Raycaster, SRGBColorSpace, Scene as Space, Spherical, Texture, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Batches, Part } from "./batches";
 import { Contacts } from "./decode";
-import { Bounds, contentBounds, reachOf } from "./framing";
+import { Content, contentOf, reachOf } from "./framing";
 import { Lights, environment } from "./lights3d";
 import { ContactMarks, LinkMarks, SelectionMarks } from "./marks3d";
-import { Finish, lookOf, materialOf, stateColor } from "./materials";
+import { Finish, cssColor, lookOf, materialOf, stateColor } from "./materials";
 import { Recording } from "./recording";
 import { Insets, Scene } from "./scene";
 import { solidOf } from "./solids";
@@ -32,7 +32,7 @@ export class Scene3 implements Scene {
     private readonly controls: OrbitControls;
     private readonly label = document.createElement("div");
     private readonly lights: Lights;
-    private readonly bounds: Bounds;
+    private readonly content: Content;
     /** The middle of the content: what is drawn is relative to it, so that far from the world's origin
      *  single precision suffices. Whole numbers, for the grid. */
     private readonly origin: Vector3;
@@ -40,7 +40,7 @@ export class Scene3 implements Scene {
     private readonly up: Vector3;
     private readonly parts: Part[] = [];
     private readonly batches: Batches;
-    private readonly planes: { mesh: Mesh; body: number; place: Matrix4 }[] = [];
+    private readonly planes: { mesh: Mesh; body: number; shape: number; place: Matrix4 }[] = [];
     private readonly surfaces = new Map<string, Material>();
     private readonly reaches: number[];
     private readonly moving: number[];
@@ -60,8 +60,8 @@ export class Scene3 implements Scene {
     constructor(private readonly recording: Recording, quality: "high" | "low" | null) {
         const high = quality === null ? hasGraphicsProcessor() : quality === "high";
         this.renderer = new WebGLRenderer({ antialias: high, powerPreference: "high-performance" });
-        this.bounds = contentBounds(recording);
-        const [from, to] = [new Vector3(...this.bounds.low), new Vector3(...this.bounds.high)];
+        this.content = contentOf(recording);
+        const [from, to] = [new Vector3(...this.content.low), new Vector3(...this.content.high)];
         this.size = to.distanceTo(from);
         this.origin = from.clone().add(to).divideScalar(2).round();
         this.up = upwards(recording.header.gravity);
@@ -110,7 +110,7 @@ export class Scene3 implements Scene {
 
     private addPlanes(materialFor: (surface: string) => Material) {
         this.recording.bodies.forEach((body, index) =>
-            body.shapes.forEach((shape) => {
+            body.shapes.forEach((shape, i) => {
                 if (shape.type !== "plane") return;
                 const side = 60 * this.size;
                 const geometry = new PlaneGeometry(side, side).toNonIndexed();
@@ -120,7 +120,7 @@ export class Scene3 implements Scene {
                 const normal = new Vector3(...shape.normal).normalize();
                 const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), normal);
                 const surface = new Matrix4().compose(normal.clone().multiplyScalar(shape.offset), turn, one);
-                this.planes.push({ mesh, body: index, place: placeOf(body.center_of_mass, shape).multiply(surface) });
+                this.planes.push({ mesh, body: index, shape: i, place: placeOf(body.center_of_mass, shape).multiply(surface) });
                 this.space.add(mesh);
             }),
         );
@@ -138,9 +138,8 @@ export class Scene3 implements Scene {
     setTheme(theme: Theme) {
         this.theme = theme;
         const dark = theme.name === "dark";
-        const background = new Color().setRGB(...theme.horizon, "srgb");
-        this.space.background = background;
-        this.space.fog = new Fog(background, this.size * 2.2, this.size * 8);
+        this.space.background = sky(theme);
+        this.space.fog = new Fog(new Color().setRGB(...theme.horizon, "srgb"), this.size * 2, this.size * 8);
         this.lights.setTheme(theme);
         this.renderer.toneMappingExposure = dark ? 0.92 : 1;
         surfaceUniforms.edgeStrength.value = dark ? 0.5 : 0.42;
@@ -148,8 +147,11 @@ export class Scene3 implements Scene {
         for (const material of this.surfaces.values())
             (material as MeshStandardMaterial).envMapIntensity = dark ? 0.35 : 0.5;
         for (const marks of [this.links, this.selection, this.contactMarks]) marks?.setTheme(theme);
-        for (const { mesh } of this.planes)
-            (mesh.material as MeshStandardMaterial).color.setRGB(...theme.neutral, "srgb");
+        for (const { mesh, body, shape } of this.planes) {
+            const { color } = lookOf(materialOf(this.recording, body, shape));
+            const shade = stateColor(color, this.recording.bodies[body].type, false, theme.neutral, body);
+            (mesh.material as MeshStandardMaterial).color.setRGB(...shade, "srgb");
+        }
         this.shown.fill(255); // all colours anew
     }
 
@@ -326,30 +328,48 @@ export class Scene3 implements Scene {
 
     /** Looks at all of the content from a direction in degrees; `near` 2 goes to half the distance. */
     private look(azimuth: number, elevation: number, near: number) {
-        const low = new Vector3(...this.bounds.low).sub(this.origin);
-        const high = new Vector3(...this.bounds.high).sub(this.origin);
-        const center = low.clone().add(high).divideScalar(2);
         const degrees = Math.PI / 180;
         const direction = new Vector3()
             .setFromSpherical(new Spherical(1, (90 - elevation) * degrees, azimuth * degrees))
             .applyQuaternion(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.up));
+        const { left, right, top, bottom } = this.insets;
+        const slope = Math.tan((this.camera.fov / 2) * degrees) * 0.94;
+        const slopeX = slope * this.camera.aspect * Math.max(0.3, 1 - (left + right) / this.width);
+        const slopeY = slope * Math.max(0.3, 1 - (top + bottom) / this.height);
+        const { target, distance } = this.frame(direction, slopeX, slopeY);
+        this.controls.target.copy(target);
+        this.camera.position.copy(target).addScaledVector(direction, distance / near);
+        this.controls.update();
+    }
+
+    /** What to look at, and from how far, so that all content lies within the slopes of the view and in its
+     *  middle: the distance that a target needs and the target that a distance needs, in turns. */
+    private frame(direction: Vector3, slopeX: number, slopeY: number) {
         const right = new Vector3().crossVectors(this.up, direction).normalize();
         const above = new Vector3().crossVectors(direction, right);
-        const { width, height } = this;
-        const { left, right: rightInset, top, bottom } = this.insets;
-        const slope = Math.tan((this.camera.fov / 2) * degrees);
-        const slopeY = slope * Math.max(0.3, 1 - (top + bottom) / Math.max(1, height));
-        const slopeX = slope * this.camera.aspect * Math.max(0.3, 1 - (left + rightInset) / Math.max(1, width));
-        // The least distance from which every corner of the bounds lies within the picture.
-        let distance = this.size * 0.05;
-        for (let i = 0; i < 8; ++i) {
-            const corner = new Vector3(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z).sub(center);
-            const depth = corner.dot(direction);
-            distance = Math.max(distance, depth + Math.abs(corner.dot(right)) / slopeX, depth + Math.abs(corner.dot(above)) / slopeY);
+        const low = new Vector3(...this.content.low).sub(this.origin);
+        const target = new Vector3(...this.content.high).sub(this.origin).add(low).divideScalar(2);
+        const balls = this.content.balls.map(({ center, radius }) => {
+            const place = new Vector3(...center).sub(this.origin).sub(target);
+            return { x: place.dot(right), y: place.dot(above), depth: place.dot(direction), radius };
+        });
+        const shift = { x: 0, y: 0 };
+        let distance = 1.2 * this.size;
+        for (let round = 0; round < 8 && balls.length > 0; ++round) {
+            distance = 0.05 * this.size;
+            for (const { x, y, depth, radius } of balls)
+                distance = Math.max(distance,
+                    depth + (Math.abs(x - shift.x) + radius) / slopeX, depth + (Math.abs(y - shift.y) + radius) / slopeY);
+            for (const axis of ["x", "y"] as const) {
+                let [least, most] = [Infinity, -Infinity];
+                for (const { depth, radius, [axis]: place } of balls) {
+                    least = Math.min(least, (place - shift[axis] - radius) / (distance - depth));
+                    most = Math.max(most, (place - shift[axis] + radius) / (distance - depth));
+                }
+                shift[axis] += ((least + most) / 2) * distance * 0.8;
+            }
         }
-        this.controls.target.copy(center);
-        this.camera.position.copy(center).addScaledVector(direction, (distance * 0.92) / near);
-        this.controls.update();
+        return { target: target.addScaledVector(right, shift.x).addScaledVector(above, shift.y), distance };
     }
 
     cost() {
@@ -359,6 +379,21 @@ export class Scene3 implements Scene {
 
 const position = new Vector3();
 const rotation = new Quaternion();
+
+/** A gradient that ends at the horizon, where distant things fade into it. */
+function sky(theme: Theme): Texture {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [2, 256];
+    const context = canvas.getContext("2d")!;
+    const gradient = context.createLinearGradient(0, 0, 0, 256);
+    gradient.addColorStop(0, cssColor(theme.background));
+    gradient.addColorStop(0.5, cssColor(theme.horizon));
+    context.fillStyle = gradient;
+    context.fillRect(0, 0, 2, 256);
+    const texture = new CanvasTexture(canvas);
+    texture.colorSpace = SRGBColorSpace;
+    return texture;
+}
 
 /** False where the processor itself has to draw every pixel. */
 function hasGraphicsProcessor(): boolean {

@@ -59,7 +59,8 @@ float gridLine() {
     vec3 distance = abs(fract(place - 0.5) - 0.5);
     vec3 line = clamp(1.2 - distance / change, 0.0, 1.0) * (1.0 - smoothstep(0.05, 0.35, change));
     line *= 1.0 - smoothstep(0.8, 0.95, normal);
-    return max(line.x, max(line.y, line.z));
+    // Only on level ground and upright walls: on rugged terrain lines would tell nothing.
+    return max(line.x, max(line.y, line.z)) * smoothstep(0.995, 0.999, max(normal.x, max(normal.y, normal.z)));
 }
 `;
 
@@ -82,10 +83,11 @@ export function surfaceMaterial(finish: Finish, gridded: boolean, environment: T
             .replace("#include <common>", `#include <common>\n${fragmentDeclarations}`)
             .replace("#include <color_fragment>", /* glsl */ `#include <color_fragment>
                 diffuseColor.rgb *= surfaceTint;
+                float lines = edgeStrength * edgeLine();
                 #ifdef GRIDDED
-                diffuseColor.rgb = mix(diffuseColor.rgb, diffuseColor.rgb * 0.45, gridStrength * gridLine());
+                lines = max(0.5 * lines, 0.55 * gridStrength * gridLine());
                 #endif
-                diffuseColor.rgb *= 1.0 - edgeStrength * edgeLine();`);
+                diffuseColor.rgb *= 1.0 - lines;`);
     };
     return material;
 }
