@@ -3,8 +3,7 @@
 # Sets carom_replay_source, the generated source file that defines carom::io::replay_template().
 set(carom_replay_source ${PROJECT_BINARY_DIR}/replay_template.cpp)
 
-if(CAROM_BUILD_REPLAY AND EXISTS ${PROJECT_SOURCE_DIR}/web/replay/src/page.html
-   AND EXISTS ${PROJECT_SOURCE_DIR}/web/replay/src/main.ts)
+if(CAROM_BUILD_REPLAY)
     find_program(CAROM_NODE NAMES node nodejs REQUIRED)
     find_program(CAROM_NPM npm REQUIRED)
     set(from ${PROJECT_SOURCE_DIR}/web/replay)

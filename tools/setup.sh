@@ -39,6 +39,8 @@ for_test() {
     program pkg-config pkg-config
     program clang-format-14 clang-format-14
     program chromium chromium
+    program clang++-19 clang-19
+    package libclang-rt-19-dev
     package libgtest-dev
     package libbenchmark-dev
 }

@@ -9,7 +9,7 @@ struct Rebound {
     double gap = 0;    ///< m
 };
 
-/// The flight of one point of contact through a step with an impact at its own time. The point starts with
+/// The flight of one point of contact through a step, with the impact at its own time. The point starts with
 /// the gap s₀ and the speed of separation v₀ under the constant relative acceleration a. It meets the surface
 /// with vᵢ² = v₀² − 2 a s₀ (energy) at τ = 2 s₀ / (vᵢ − v₀), leaves with u = e vᵢ, and has then time for more
 /// bounces while 2u / |a| is less than what is left of the step. So the height of a bounce does not depend on

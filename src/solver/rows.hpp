@@ -159,18 +159,20 @@ template <bool biased, int D, class F>
 void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
                    const Weight<D, F>& wb, const SubStep<F>& sub) {
     for (NormalRow<D, F>& p : c.points) {
-        const F s = gap(c, p, a, b);
-        const auto apart = s > F(0);
-        F bias = (s + c.lead) * sub.inverse_length, scale = F(1), keep = F(0);
+        const F now = gap(c, p, a, b);
+        // Before positions are integrated the lead lies ahead; after it, the way still lacks the lead.
+        const F next_gap = now + c.lead;
+        const auto apart = (biased ? now : next_gap) > F(0);
+        F bias, scale, keep = F(0);
         if constexpr (biased) {
-            bias = select(apart, bias, maximum(c.soft.mass_scale * c.soft.bias_rate * s, -sub.push_speed));
+            const F push = maximum(c.soft.mass_scale * c.soft.bias_rate * now, -sub.push_speed);
+            bias = select(apart, next_gap * sub.inverse_length, push);
             scale = select(apart, F(1), c.soft.mass_scale);
             keep = select(apart, F(0), c.soft.impulse_scale);
         } else {
-            bias = select(apart, bias, F(0));
             // A gap that is still open after this sub-step is the business of the next one.
             scale = select(apart, select(p.impulse > F(0), F(1), F(0)), F(1));
-            bias = bias * scale;
+            bias = select(apart, scale * next_gap * sub.inverse_length, F(0));
         }
         const F speed = dot(c.normal, relative_velocity(a, b, p.arm_a, p.arm_b));
         const F next = maximum(p.impulse - p.mass * (scale * speed + bias) - keep * p.impulse, F(0));

@@ -47,9 +47,11 @@ void Solver<D>::run(const SolverInput<D>& input) {
     for (int i = 0; i < input.substeps; ++i) {
         integrate_velocities();
         solve<true>();
+        find_struck();
+        settle_struck<true>();
         integrate_positions();
         solve<false>();
-        settle_struck();
+        settle_struck<false>();
         finish_substep();
     }
     bounce(input);
@@ -199,11 +201,15 @@ void Solver<D>::begin_warm() {
 /// rest.
 template <int D>
 void Solver<D>::look_ahead() {
+    constexpr float touching = 1e-5f;  // m: nearer things are not in flight
     for (std::size_t i = 0; i < rows_.size(); ++i) {
+        Rows& rows = rows_[i];
+        const auto open = [](const NormalRow<D, float>& p) { return p.mass == 0 || p.separation > touching; };
+        if (!std::all_of(rows.points.begin(), rows.points.end(), open)) continue;
         const Drive &a = drives_[pairs_[i].a], &b = drives_[pairs_[i].b];
-        const float outer = -0.5f * h_ * h_ * dot(rows_[i].normal, b.acceleration - a.acceleration);
-        const float steady = -0.5f * h_ * dot(rows_[i].normal, b.change - a.change);
-        rows_[i].lead = std::max(0.0f, std::min(outer, steady));
+        const float outer = -0.5f * h_ * h_ * dot(rows.normal, b.acceleration - a.acceleration);
+        const float steady = -0.5f * h_ * dot(rows.normal, b.change - a.change);
+        rows.lead = std::max(0.0f, std::min(outer, steady));
     }
 }
 
@@ -252,24 +258,30 @@ void Solver<D>::solve() {
     }
 }
 
-/// A contact that begins has no impulses to start from, and one pass over its rows leaves its points unequal:
-/// a box that lands flat would tilt, and one put on a slope would slip before it holds. So the rows of
-/// contacts that carry an impulse for the first time are relaxed until their points agree.
+/// The contacts that carry an impulse for the first time.
 template <int D>
-void Solver<D>::settle_struck() {
-    constexpr int sweeps = 8;
+void Solver<D>::find_struck() {
     struck_.clear();
     for (std::uint32_t i = 0; i < rows_.size(); ++i) {
         if (settled_[i]) continue;
         for (const NormalRow<D, float>& p : rows_[i].points) settled_[i] |= p.impulse > 0;
         if (settled_[i]) struck_.push_back(i);
     }
+}
+
+/// A contact that begins has no impulses to start from, and one pass over its rows leaves its points unequal:
+/// a box that lands flat would tilt, and one put on a slope would slip before it holds. So the rows of these
+/// contacts are solved, friction included, until their points agree.
+template <int D>
+template <bool biased>
+void Solver<D>::settle_struck() {
+    constexpr int sweeps = 8;
     Body still;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (const std::uint32_t i : struck_) {
             const auto [a, b] = pairs_[i];
             Body &ma = motion(a, still), &mb = motion(b, still);
-            solve_normals<false>(rows_[i], ma, mb, weights_[a], weights_[b], sub_);
+            solve_normals<biased>(rows_[i], ma, mb, weights_[a], weights_[b], sub_);
             solve_friction(rows_[i], ma, mb, weights_[a], weights_[b]);
         }
     }

@@ -79,6 +79,8 @@ class Solver {
     void integrate_velocities();
     template <bool biased>
     void solve();
+    void find_struck();
+    template <bool biased>
     void settle_struck();
     void integrate_positions();
     void finish_substep();

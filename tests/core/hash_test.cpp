@@ -23,10 +23,10 @@ TEST(Hash, IsTheSameForTheSameWords) {
 }
 
 TEST(Hash, TellsOrderLengthAndZeroesApart) {
-    const std::set<std::uint64_t> different{hash_of({}),     hash_of({0}),       hash_of({0, 0}),
-                                            hash_of({1}),    hash_of({1, 0}),    hash_of({0, 1}),
-                                            hash_of({1, 2}), hash_of({2, 1}),    hash_of({1, 2, 0}),
-                                            hash_of({1, 1}), hash_of({1, 1, 1}), hash_of({~std::uint64_t{0}})};
+    const std::set<std::uint64_t> different{
+        hash_of({}),        hash_of({0}),    hash_of({0, 0}),    hash_of({1}),
+        hash_of({1, 0}),    hash_of({0, 1}), hash_of({1, 2}),    hash_of({2, 1}),
+        hash_of({1, 2, 0}), hash_of({1, 1}), hash_of({1, 1, 1}), hash_of({~std::uint64_t{0}})};
     EXPECT_EQ(different.size(), 12u);
 }
 

@@ -188,7 +188,8 @@ TYPED_TEST(FlightIn, ASwingShowsTheOrderInRotation) {
     for (const Integrator integrator : all_integrators) {
         const int coarse = order[static_cast<int>(integrator)] == 4 ? 50 : 1000;
         const double e1 = swing_error<D>(integrator, coarse), e2 = swing_error<D>(integrator, 2 * coarse);
-        EXPECT_NEAR(std::log2(e1 / e2), order[static_cast<int>(integrator)], 0.2) << static_cast<int>(integrator);
+        EXPECT_NEAR(std::log2(e1 / e2), order[static_cast<int>(integrator)], 0.2)
+            << static_cast<int>(integrator);
     }
 }
 
@@ -197,7 +198,8 @@ TYPED_TEST(FlightIn, ASwingShowsTheOrderInRotation) {
 TYPED_TEST(FlightIn, AnOrbitStaysOne) {
     constexpr int D = TypeParam::value;
     const double largest_error[] = {0.0178, 1, 2.93e-4, 2.2e-7};
-    for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::verlet, Integrator::rk4}) {
+    for (const Integrator integrator :
+         {Integrator::semi_implicit_euler, Integrator::verlet, Integrator::rk4}) {
         Flyer<D> flyer;
         flyer.forces.add({PointGravity<D>{{}, 1}});
         flyer.state().position.x = 0.4;
@@ -227,7 +229,8 @@ TEST(Flight, FreeRotationConserves) {
         Flyer<3> flyer;
         flyer.set_inertia(rotated(diagonal(b + c, a + c, a + b), random.rotation<3>()));
         flyer.state().rotation = random.rotation<3>();
-        flyer.state().angular_velocity = random.between(0.5, 20) * random.direction<3>();
+        const double speed = random.between(0.5, 20);
+        flyer.state().angular_velocity = speed * random.direction<3>();
         const double e0 = energy(flyer);
         const Vec3 l0 = momentum(flyer);
         flyer.fly(all_integrators[i % 4], 1.0 / 60, 600);

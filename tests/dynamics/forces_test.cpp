@@ -83,7 +83,8 @@ TYPED_TEST(ForcesIn, ChangesAreToldOnce) {
     EXPECT_EQ(all, 0);
     forces.add({Wind<D>{}, 1, 2});
     for (int i = 0; i < 300; ++i) {
-        forces.each_change(0.01 * i, 0.01 * (i + 1), [](std::uint32_t) {}, [&] { ++all; });
+        forces.each_change(
+            0.01 * i, 0.01 * (i + 1), [](std::uint32_t) {}, [&] { ++all; });
     }
     EXPECT_EQ(all, 2);
 }

@@ -33,7 +33,8 @@ TEST(Islands, TheRootIsTheSmallestMemberWhateverTheOrder) {
         const auto count = static_cast<std::uint32_t>(1 + random() % 80);
         std::vector<Link> links;
         for (std::uint64_t i = random() % (count + 20); i > 0; --i) {
-            links.push_back({static_cast<std::uint32_t>(random() % count), static_cast<std::uint32_t>(random() % count)});
+            links.push_back(
+                {static_cast<std::uint32_t>(random() % count), static_cast<std::uint32_t>(random() % count)});
         }
         const std::vector<std::uint32_t> expected = smallest_members(count, links);
         for (int order = 0; order < 3; ++order) {

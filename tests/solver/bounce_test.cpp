@@ -30,7 +30,8 @@ struct Reference {
                     break;
                 }
                 double low = 0, high = left;
-                for (int b = 0; b < 60; ++b) (after(0.5 * (low + high)) >= 0 ? low : high) = 0.5 * (low + high);
+                for (int b = 0; b < 60; ++b)
+                    (after(0.5 * (low + high)) >= 0 ? low : high) = 0.5 * (low + high);
                 speed = -e * (speed + a * low);
                 gap = 0;
                 left -= low;

@@ -142,7 +142,8 @@ TYPED_TEST(RowsIn, AGapIsLeftToClose) {
         t.rows.points[0].separation = 0.01f;
         const float before = t.approach();
         solve_normals<true>(t.rows, t.a, t.b, t.wa, t.wb, sub);
-        EXPECT_NEAR(t.approach(), std::min(before, 0.01f * 240), rounding) << "as fast as closes it in a sub-step";
+        EXPECT_NEAR(t.approach(), std::min(before, 0.01f * 240), rounding)
+            << "as fast as closes it in a sub-step";
     }
 }
 

@@ -179,7 +179,8 @@ void expect_same(const World<D>& world, const Model<D>& model) {
         shapes += static_cast<int>(entry.shapes.size());
         ASSERT_TRUE(world.contains(body));
         ASSERT_EQ(world.user_data(body), entry.user_data);
-        ASSERT_EQ(std::vector<ShapeId<D>>(world.shapes(body).begin(), world.shapes(body).end()), entry.shapes);
+        ASSERT_EQ(std::vector<ShapeId<D>>(world.shapes(body).begin(), world.shapes(body).end()),
+                  entry.shapes);
         for (const ShapeId<D>& shape : entry.shapes) ASSERT_EQ(world.body_of(shape), body);
     }
     ASSERT_EQ(world.counts().bodies, static_cast<int>(model.order.size()));
@@ -202,7 +203,8 @@ void command(World<D>& world, Model<D>& model, Random& random, std::uint64_t num
         model.entries[body.index] = {number, {world.shapes(body).begin(), world.shapes(body).end()}};
         return;
     }
-    const BodyId<D> body = model.order[static_cast<std::size_t>(random.below(static_cast<int>(model.order.size())))];
+    const BodyId<D> body =
+        model.order[static_cast<std::size_t>(random.below(static_cast<int>(model.order.size())))];
     auto& entry = model.entries[body.index];
     switch (random.below(6)) {
         case 0:

@@ -158,7 +158,8 @@ double fastest(const World<D>& world, double size = 0.5) {
     double speed = 0;
     for (const BodyId<D>& body : world.bodies()) {
         if (world.type(body) != BodyType::dynamic) continue;
-        speed = std::max(speed, length(world.velocity(body)) + size * spin_speed<D>(world.angular_velocity(body)));
+        speed = std::max(speed,
+                         length(world.velocity(body)) + size * spin_speed<D>(world.angular_velocity(body)));
     }
     return speed;
 }

@@ -11,7 +11,8 @@ namespace {
 template <int D>
 Vec<D> momentum(const World<D>& world) {
     Vec<D> sum{};
-    for (const BodyId<D>& body : world.bodies()) sum += world.mass_properties(body).mass * world.velocity(body);
+    for (const BodyId<D>& body : world.bodies())
+        sum += world.mass_properties(body).mass * world.velocity(body);
     return sum;
 }
 
@@ -83,7 +84,6 @@ TYPED_TEST(Conservation, OfMomentumInASwarm) {
             EXPECT_LT(off, 1e-6);
             EXPECT_LT(turned, 5e-3);
             EXPECT_GT(contacts, 100) << "they should meet";
-            if (getenv("SHOW")) printf("%dD e %.1f mu %.1f momentum %.2e angular %.2e contacts %d\n", D, restitution, friction, off, turned, contacts);
         }
     }
 }
@@ -101,7 +101,6 @@ TYPED_TEST(Conservation, EnergyNeverGrowsInASwarm) {
             most = std::max(most, world.energy().total() / start);
         }
         EXPECT_LT(most, 1.02) << "restitution " << restitution;
-        if (getenv("SHOW")) printf("%dD e %.1f most energy %.5f end %.5f\n", D, restitution, most, world.energy().total() / start);
     }
 }
 
@@ -143,10 +142,11 @@ TYPED_TEST(Conservation, AnObliqueCollisionParts) {
     const BodyId<D> cue = world.add_body(a);
     const BodyId<D> object = world.add_body(body_of<D>(Ball{0.5}, {}, smooth));
     run(world, 60);
-    EXPECT_NEAR(length(world.velocity(object)), 10 * std::sqrt(0.5), 0.05);
-    EXPECT_NEAR(dot(world.velocity(cue), world.velocity(object)), 0, 0.5);
-    EXPECT_NEAR(world.velocity(object).y / world.velocity(object).x, -1, 0.02);
-    EXPECT_NEAR(world.energy().kinetic, 0.5 * world.mass_properties(cue).mass * 100, 1e-3);
+    // The normal is that of the start of the step, when the balls were up to 17 cm apart.
+    EXPECT_NEAR(length(world.velocity(object)), 10 * std::sqrt(0.5), 0.1);
+    EXPECT_NEAR(world.velocity(object).y / world.velocity(object).x, -1, 0.03);
+    EXPECT_NEAR(dot(world.velocity(cue), world.velocity(object)), 0, 1e-4);
+    EXPECT_NEAR(world.energy().kinetic / (0.5 * world.mass_properties(cue).mass * 100), 1, 1e-6);
 }
 
 /// A rod is struck at one end by a ball with e = 1: momentum, angular momentum and energy give the three
@@ -199,7 +199,6 @@ TYPED_TEST(Conservation, EnergyNeverGrowsInAPile) {
     }
     EXPECT_LT(rise, 0.005);
     EXPECT_LT(world.energy().kinetic / scale, 1e-3) << "and it comes to rest";
-    if (getenv("SHOW")) printf("%dD pile rise %.2e kinetic %.2e\n", D, rise, world.energy().kinetic / scale);
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ TYPED_TEST(Contacts, CarryAColumn) {
     }
     run(world, 300);
     std::map<std::uint32_t, double> under;
-    for (const Contact<D>& c : world.contacts()) under[std::max(c.body_a.index, c.body_b.index)] = normal_impulse(c);
+    for (const Contact<D>& c : world.contacts())
+        under[std::max(c.body_a.index, c.body_b.index)] = normal_impulse(c);
     ASSERT_EQ(under.size(), static_cast<std::size_t>(boxes));
     for (int i = 1; i <= boxes; ++i) {
         const double weight = (boxes + 1 - i) * 9.81 * frame_time;
@@ -207,7 +208,8 @@ TYPED_TEST(Contacts, MovedBodiesAreAllThatAGameNeeds) {
     };
     add(0, ground<D>());
     for (std::size_t i = 1; i < 12; ++i) {
-        BodyDefinition<D> d = body_of<D>(cube<D>(0.5), vec<D>(0.1 * (i % 3), 0.3 + 0.6 * static_cast<double>(i)));
+        BodyDefinition<D> d =
+            body_of<D>(cube<D>(0.5), vec<D>(0.1 * (i % 3), 0.3 + 0.6 * static_cast<double>(i)));
         d.shapes[0].center = vec<D>(0.1, 0);
         add(i, d);
     }

@@ -111,7 +111,8 @@ TYPED_TEST(Driver, ATeleportDoesNotSmear) {
     driver.advance(0.002);
     EXPECT_EQ(driver.interpolated(body).position, vec<D>(100, 7));
     driver.advance(0.01);
-    EXPECT_NEAR(driver.interpolated(body).position.x, 100 + 0.01 * driver.alpha(), 1e-12) << "then it runs on";
+    EXPECT_NEAR(driver.interpolated(body).position.x, 100 + 0.01 * driver.alpha(), 1e-12)
+        << "then it runs on";
     EXPECT_EQ(world.position(body).x, 100 + 0.01);
 }
 

@@ -69,7 +69,8 @@ TYPED_TEST(EnergyIn, StaysWhereForcesAreConservative) {
     WorldDefinition<D> definition = sleepless<D>();
     definition.integrator = Integrator::rk4;
     World<D> world(definition);
-    const BodyId<D> a = world.add_body(unit_body<D>(vec<D>(3, 0))), b = world.add_body(unit_body<D>(vec<D>(0, 4)));
+    const BodyId<D> a = world.add_body(unit_body<D>(vec<D>(3, 0))),
+                    b = world.add_body(unit_body<D>(vec<D>(0, 4)));
     Spring<D> spring;
     spring.a = a;
     spring.b = b;

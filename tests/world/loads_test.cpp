@@ -88,7 +88,8 @@ TYPED_TEST(Loads, AnImpulseActsAtOnce) {
         EXPECT_LT(length(world.velocity(body)), 1e-14);
         EXPECT_LT(spin_speed<D>(world.angular_velocity(body)), 1e-14);
         world.apply_impulse(body, impulse);
-        EXPECT_LT(spin_speed<D>(world.angular_velocity(body)), 1e-14) << "at the centre of mass it does not turn";
+        EXPECT_LT(spin_speed<D>(world.angular_velocity(body)), 1e-14)
+            << "at the centre of mass it does not turn";
         world.apply_angular_impulse(body, spin<D>(2));
         EXPECT_LT(angular_gap<D>(m.inertia * world.angular_velocity(body), spin<D>(2)), 1e-11);
     }
@@ -119,8 +120,8 @@ TYPED_TEST(Loads, NothingMovesWhatIsNotDynamic) {
 /// The force of a window of half a second has given F · ½ s, whatever the integrator.
 TYPED_TEST(Loads, AConstantForceActsInItsWindow) {
     constexpr int D = TypeParam::value;
-    for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::explicit_euler,
-                                        Integrator::verlet, Integrator::rk4}) {
+    for (const Integrator integrator :
+         {Integrator::semi_implicit_euler, Integrator::explicit_euler, Integrator::verlet, Integrator::rk4}) {
         WorldDefinition<D> definition = no_gravity<D>();
         definition.integrator = integrator;
         World<D> world(definition);
@@ -133,7 +134,8 @@ TYPED_TEST(Loads, AConstantForceActsInItsWindow) {
         const double place = 1.5 * 0.25 + 0.5 * 3 * 0.25;  // ½ a t², then v t
         // Explicit Euler is a step late, and the stages of rk4 look over the edges of the window.
         const bool exact = integrator == Integrator::semi_implicit_euler || integrator == Integrator::verlet;
-        EXPECT_NEAR(world.position(body).x, place, exact ? 1e-12 : frame_time) << static_cast<int>(integrator);
+        EXPECT_NEAR(world.position(body).x, place, exact ? 1e-12 : frame_time)
+            << static_cast<int>(integrator);
     }
 }
 
@@ -298,7 +300,8 @@ TYPED_TEST(Loads, ASpringWithADamperSwingsAsItShould) {
 TYPED_TEST(Loads, ASpringIsAtRestAtTheLengthThatItHadWhenItCame) {
     constexpr int D = TypeParam::value;
     World<D> world(no_gravity<D>());
-    const BodyId<D> a = world.add_body(unit_body<D>(vec<D>(0, 0))), b = world.add_body(unit_body<D>(vec<D>(3, 4)));
+    const BodyId<D> a = world.add_body(unit_body<D>(vec<D>(0, 0))),
+                    b = world.add_body(unit_body<D>(vec<D>(3, 4)));
     Spring<D> spring;
     spring.a = a;
     spring.b = b;

@@ -36,7 +36,8 @@ TYPED_TEST(Mass, FollowsFromTheShapes) {
     EXPECT_LT(length(p.center - vec<D>(3 * m2 / mass, 0)), 1e-12);
     EXPECT_LT(length(world.position(body)), 1e-15) << "the frame stays where it was put";
     EXPECT_LT(length(world.center_of_mass(body) - p.center), 1e-15);
-    // A cube turns about its middle with m s² / 6; for the pair's z axis Steiner adds the reduced mass times 3².
+    // A cube turns about its middle with m s² / 6; for the pair's z axis Steiner adds the reduced mass times
+    // 3².
     const double about_z = m1 / 6 + m2 * 4 / 6 + m1 * m2 / mass * 9;
     if constexpr (D == 2)
         EXPECT_NEAR(p.inertia, about_z, 1e-9);
@@ -119,8 +120,9 @@ TYPED_TEST(Mass, ATensorTurnsWithItsBody) {
         const Vec3 impulse = random.in_cube<3>(1);
         world.apply_angular_impulse(body, impulse);
         const Vec3 w = world.angular_velocity(body);
-        EXPECT_LT(length(rotate(world.rotation(body), *d.inertia * unrotate(world.rotation(body), w)) - impulse),
-                  1e-14);
+        EXPECT_LT(
+            length(rotate(world.rotation(body), *d.inertia * unrotate(world.rotation(body), w)) - impulse),
+            1e-14);
     } else {
         World2 world(no_gravity<2>());
         BodyDefinition2 d = body_of<2>(Ball{1});
@@ -131,7 +133,8 @@ TYPED_TEST(Mass, ATensorTurnsWithItsBody) {
     }
 }
 
-/// A body whose centre of mass lies in one corner falls over that corner's side: an unbalanced box on an edge.
+/// A body whose centre of mass lies in one corner falls over that corner's side: an unbalanced box on an
+/// edge.
 TYPED_TEST(Mass, TheCentreDecidesHowABodyTips) {
     constexpr int D = TypeParam::value;
     for (const double offset : {-0.4, 0.4}) {

@@ -5,8 +5,8 @@
 
 #include "world/builders.hpp"
 
-// Whatever cannot be simulated is refused: the error names the field, and the world is as before the call, now
-// and later.
+// Whatever cannot be simulated is refused: the error names the field, and the world is as before the call,
+// now and later.
 
 namespace carom::test {
 namespace {
@@ -163,10 +163,16 @@ TYPED_TEST(Refusals, OfBodies) {
         bad_body<D>("gravity_scale", [](Definition& d) { d.gravity_scale = infinity; }),
         bad_body<D>("linear_damping", [](Definition& d) { d.linear_damping = -0.1; }),
         bad_body<D>("angular_damping", [](Definition& d) { d.angular_damping = nan; }),
-        bad_body<D>("shapes[0]", [](Definition& d) { d.shapes[0].geometry = Plane<D>{vec<D>(0, 1), 0}; }),
+        bad_body<D>("shapes[0]",
+                    [](Definition& d) {
+                        d.shapes[0].geometry = Plane<D>{vec<D>(0, 1), 0};
+                    }),
         {"body", [](Scene<D>& s) { s.world.remove_body(s.dead); }},
         {"body", [](Scene<D>& s) { s.world.remove_body({}); }},
-        {"body", [](Scene<D>& s) { s.world.remove_body({1000, 1}); }},
+        {"body",
+         [](Scene<D>& s) {
+             s.world.remove_body({1000, 1});
+         }},
     });
 }
 
@@ -210,9 +216,7 @@ TYPED_TEST(Refusals, OfShapes) {
         bad("radius", [](Definition& s) { s.geometry = Cone{-1, 1}; });
     }
     const auto plane_with = [](double offset, double y) {
-        return [=](Scene<D>& s) {
-            s.world.add_shape(s.floor, shape_of<D>(Plane<D>{vec<D>(0, y), offset}));
-        };
+        return [=](Scene<D>& s) { s.world.add_shape(s.floor, shape_of<D>(Plane<D>{vec<D>(0, y), offset})); };
     };
     calls.push_back({"offset", plane_with(infinity, 1)});
     calls.push_back({"normal", plane_with(0, 0)});
@@ -253,7 +257,8 @@ TYPED_TEST(Refusals, OfForces) {
         {"force", [](Scene<D>& s) { s.world.remove_force(s.dead_force); }},
         {"force", [](Scene<D>& s) { s.world.remove_force({}); }},
     };
-    const auto on_box = [&](const std::string& field, const std::function<ForceDefinition<D>(BodyId<D>)>& make) {
+    const auto on_box = [&](const std::string& field,
+                            const std::function<ForceDefinition<D>(BodyId<D>)>& make) {
         calls.push_back({field, [=](Scene<D>& s) { s.world.add_force(make(s.box)); }});
     };
     on_box("value", [](BodyId<D> b) -> ForceDefinition<D> { return {ConstantForce<D>{b, vec<D>(0, nan)}}; });
@@ -305,8 +310,14 @@ TYPED_TEST(Refusals, OfChanges) {
         {"dt", [](Scene<D>& s) { s.world.step(-1); }},
         {"dt", [](Scene<D>& s) { s.world.step(nan); }},
         {"dt", [](Scene<D>& s) { s.world.step(1.5); }},
-        {"position", [](Scene<D>& s) { s.world.set_transform(s.box, {vec<D>(0, nan), {}}); }},
-        {"rotation", [](Scene<D>& s) { s.world.set_transform(s.box, {vec<D>(0, 1), not_unit<D>()}); }},
+        {"position",
+         [](Scene<D>& s) {
+             s.world.set_transform(s.box, {vec<D>(0, nan), {}});
+         }},
+        {"rotation",
+         [](Scene<D>& s) {
+             s.world.set_transform(s.box, {vec<D>(0, 1), not_unit<D>()});
+         }},
         {"velocity", [](Scene<D>& s) { s.world.set_velocity(s.box, vec<D>(infinity, 0)); }},
         {"velocity", [](Scene<D>& s) { s.world.set_velocity(s.floor, vec<D>(1, 0)); }},
         {"angular_velocity", [](Scene<D>& s) { s.world.set_angular_velocity(s.box, bad_spin<D>()); }},
@@ -358,7 +369,9 @@ TYPED_TEST(Refusals, OfStaleHandlesEverywhere) {
         [](W& w, Id b) { w.set_gravity_scale(b, 1); },
         [](W& w, Id b) { w.set_damping(b, 0, 0); },
         [](W& w, Id b) { w.set_locks(b, {}); },
-        [](W& w, Id b) { w.set_mass_properties(b, {1, {}, unit_body<D>().inertia.value()}); },
+        [](W& w, Id b) {
+            w.set_mass_properties(b, {1, {}, unit_body<D>().inertia.value()});
+        },
         [](W& w, Id b) { w.set_user_data(b, 1); },
         [](W& w, Id b) { w.wake(b); },
         [](W& w, Id b) { w.put_to_sleep(b); },

@@ -5,8 +5,7 @@ import { chromium } from "playwright-core";
 
 export const program = process.env.CHROMIUM ?? "/usr/bin/chromium";
 
-/** `driver` is what ANGLE draws with: "swiftshader", or "null", which draws nothing. */
-export async function launch(driver = "swiftshader") {
+export async function launch() {
     await access(program).catch(() => {
         throw new Error(`no browser at ${program}: install Debian's package chromium, or let CHROMIUM name one`);
     });
@@ -17,7 +16,7 @@ export async function launch(driver = "swiftshader") {
             "--no-sandbox",
             "--disable-gpu",
             "--use-gl=angle",
-            `--use-angle=${driver}`,
+            "--use-angle=swiftshader",
             "--enable-unsafe-swiftshader",
             "--disable-quic",
             "--no-first-run",
@@ -29,8 +28,9 @@ export async function launch(driver = "swiftshader") {
 }
 
 /** Opens a replay, once its page has read it. Throws when anything goes wrong on the page. */
-export async function openReplay(browser, url, { width = 1280, height = 800, ratio = 1 } = {}) {
+export async function openReplay(browser, url, { width = 1280, height = 800, ratio = 1, prepare } = {}) {
     const page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: ratio });
+    if (prepare) await page.addInitScript(prepare);
     page.errors = [];
     page.requests = [];
     page.on("pageerror", (error) => page.errors.push(String(error)));

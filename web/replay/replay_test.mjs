@@ -8,6 +8,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { deflateSync } from "node:zlib";
 import pngjs from "pngjs";
 import { launch, openReplay } from "./browser.mjs";
 
@@ -209,6 +210,24 @@ test("a link sets the page up", () => withReplay(fileOf("sample2"), "t=1&select=
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "light");
     await page.waitForFunction(() => window.caromReplay.stats().contacts > 0 && window.caromReplay.time() > 1.2);
 }));
+
+for (const dimension of [2, 3])
+    test(`${dimension}D: an empty world is shown`, async () => {
+        const empty = fileOf(`empty${dimension}`);
+        const whole = readFileSync(fileOf(`sample${dimension}`), "utf8");
+        const [start, header] = /id="carom-header">([^<]*)/.exec(whole);
+        const changed = JSON.parse(header);
+        Object.assign(changed, { frames: 0, bodies: [], links: [], energy: { kinetic: [], potential: [] } });
+        changed.contacts.total = 0;
+        const nothing = deflateSync(Buffer.alloc(0)).toString("base64");
+        writeFileSync(empty, whole
+            .replace(start, () => `id="carom-header">${JSON.stringify(changed)}`)
+            .replace(/(id="carom-(motion|contacts)">)[^<]*/g, `$1${nothing}`));
+        await withReplay(empty, "contacts&play", small, async (page) => {
+            assert.equal(await replay(page, "frame()"), 0);
+            assert.ok((await picture(page)).width > 0);
+        });
+    });
 
 test("a broken file says so", async () => {
     const broken = fileOf("broken");

@@ -63,7 +63,7 @@ Bounces watch(double restitution, double end, double h) {
     double longest = 2 * fall * restitution, last = drop;
     while (ball.time() < end) {
         ball.step(h);
-        if (seen.rest == 0 && std::fabs(ball.speed()) < 1e-3 && ball.apex() < 1e-4) seen.rest = ball.time();
+        if (seen.rest == 0 && ball.apex() < 1e-7) seen.rest = ball.time();
         // Each bounce takes (1 − e²) of the height: half of that tells a new flight from noise.
         const bool bounced = ball.apex() < 0.5 * (1 + restitution * restitution) * last;
         if (!bounced || longest < h) continue;

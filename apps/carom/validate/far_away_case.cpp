@@ -11,8 +11,8 @@ namespace {
 
 constexpr int rows = 10;
 
-/// A pyramid of cubes of 1 m on a fixed slab, all moved from the origin by `away`. The cubes start with gaps,
-/// so that they fall, touch and settle.
+/// A pyramid of cubes of 1 m on a fixed slab, all moved from the origin by `away`. The cubes stand on one
+/// another at the start and settle.
 template <int D>
 class Pyramid {
   public:
@@ -40,13 +40,13 @@ class Pyramid {
 
   private:
     void add_cube(int row, int i, int k) {
-        constexpr double pitch = 1.1, lift = 1.01;
+        constexpr double pitch = 1.1;
         const double middle = 0.5 * (rows - row - 1);
         BodyDefinition<D> cube;
         Vec<D> size{};
         for (int axis = 0; axis < D; ++axis) size[axis] = 1;
         cube.shapes.push_back({Box<D>{size}});
-        cube.position = in_plane<D>(pitch * (i - middle), 0.5 + 0.01 + lift * row);
+        cube.position = in_plane<D>(pitch * (i - middle), 0.5 + row);
         if constexpr (D == 3) cube.position.z = pitch * (k - middle);
         cube.position += away_;
         cubes_.push_back(world_.add_body(cube));

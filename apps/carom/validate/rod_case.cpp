@@ -15,7 +15,7 @@ struct Blow {
     double spin;     ///< rad/s
 };
 
-/// A thin rod of 1 m and 1 kg that strikes something smooth with its left end.
+/// A thin rod of 1 m and 1 kg that strikes something smooth with its right end.
 template <int D>
 class Rod {
   public:
@@ -33,7 +33,7 @@ class Rod {
         } else {  // a floor would meet the whole rod: a fixed ball under the end
             BodyDefinition<D> stud;
             stud.type = BodyType::fixed;
-            stud.position = in_plane<D>(-0.5, -0.1);
+            stud.position = in_plane<D>(0.5, -0.1);
             stud.shapes.push_back({Ball{0.1}});
             stud.shapes.back().material = smooth;
             world_.add_body(stud);
@@ -47,7 +47,7 @@ class Rod {
         } else {
             rod.inertia = Symmetric3<double>{0.5 * thickness * thickness, inertia, inertia};
         }
-        rod.rotation = turned<D>(angle);
+        rod.rotation = turned<D>(-angle);
         rod.position = in_plane<D>(0, height + thickness + 0.5 * std::sin(angle));
         id_ = world_.add_body(rod);
     }

@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <vector>
 
 #include "collision/manifold/nearest_3.hpp"
 
@@ -7,11 +11,22 @@ namespace carom::detail {
 
 namespace {
 
-/// The widest gap along the normals of a's faces, b's vertices being placed in a's frame by `b_in_a`.
+/// A point inside.
+Vec3 middle_of(const Polyhedron& core) {
+    Vec3 sum{};
+    for (const Vec3& vertex : core.vertices) sum += vertex;
+    return sum / double(core.vertices.size());
+}
+
+/// The widest gap along the normals of a's faces, b's vertices being placed in a's frame by `b_in_a`. A gap
+/// is less than the height of b's middle over the face, which spares most faces the look at all of b's
+/// vertices.
 Nearest3 widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a, double limit) {
+    const Vec3 middle = apply(b_in_a, middle_of(b));
     Nearest3 widest;
     widest.distance = -1e300;
     for (std::size_t f = 0; f < a.normals.size(); ++f) {
+        if (dot(a.normals[f], middle) - a.offsets[f] <= widest.distance) continue;
         const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
         const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
         double gap = 1e300;
@@ -31,50 +46,64 @@ Nearest3 widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Trans
     return widest;
 }
 
-/// Do the arcs of the Gauss map, from a's normal `left` to `right` and between the opposites of b's, cross?
-/// If not, the two edges make no face of the difference a − b. Along its left face's boundary an edge runs in
-/// the direction of left × right, so the edges serve for the products of the normals (Gregorius, The
-/// Separating Axis Test between Convex Polyhedra, 2013).
-bool arcs_cross(const Vec3& edge_a, const Vec3& left_a, const Vec3& right_a, const Vec3& edge_b,
-                const Vec3& left_b, const Vec3& right_b) {
-    const double left_of_b = dot(left_b, edge_a);
-    if (left_of_b * dot(right_b, edge_a) >= 0) return false;
-    const double right_of_a = dot(right_a, edge_b);
-    return dot(left_a, edge_b) * right_of_a < 0 && left_of_b * right_of_a < 0;
+/// An edge of a polyhedron with the normals of the faces on its left and right.
+struct Arc {
+    Vec3 start, along, left, right;
+};
+using Arcs = std::pmr::vector<Arc>;
+
+/// The edges, placed by `t`, that can part the polyhedron from another one by more than `gap`, if that has a
+/// point at `other` (in the polyhedron's frame). An edge's normals lie between those of its two faces; where
+/// `other` is below both faces by more than −gap, so it is along any of them.
+void find_arcs(const Polyhedron& core, const Transform3& t, const Vec3& other, double gap, Arcs& arcs) {
+    const double needed = std::min(gap, 0.0);
+    const auto height = [&](std::uint32_t f) { return dot(core.normals[f], other) - core.offsets[f]; };
+    for (const Polyhedron::Edge& edge : core.edges) {
+        if (height(edge.left) < needed && height(edge.right) < needed) continue;
+        const Vec3& from = core.vertices[edge.from];
+        arcs.push_back({apply(t, from), rotate(t.rotation, core.vertices[edge.to] - from),
+                        rotate(t.rotation, core.normals[edge.left]),
+                        rotate(t.rotation, core.normals[edge.right])});
+    }
 }
 
-/// The widest gap across an edge of a and one of b, in b's frame.
-Nearest3 widest_over_edges(const Polyhedron& a, const Polyhedron& b, const Transform3& a_in_b) {
+/// Do the arcs of the Gauss map, from a's normal on the left to that on the right and between the opposites
+/// of b's, cross? If not, the two edges make no face of the difference a − b. Along its left face's boundary
+/// an edge runs in the direction of left × right, so the edges serve for the products of the normals
+/// (Gregorius, The Separating Axis Test between Convex Polyhedra, 2013).
+bool cross_on_gauss_map(const Arc& a, const Arc& b) {
+    const double left_of_b = dot(b.left, a.along);
+    if (left_of_b * dot(b.right, a.along) >= 0) return false;
+    const double right_of_a = dot(a.right, b.along);
+    return dot(a.left, b.along) * right_of_a < 0 && left_of_b * right_of_a < 0;
+}
+
+/// The widest gap across an edge of a and one of b, if it is more than `gap`. In a's frame.
+Nearest3 widest_over_edges(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a, double gap) {
+    std::array<std::byte, 16 * 1024> room;
+    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
+    Arcs arcs_a(&memory), arcs_b(&memory);
+    find_arcs(a, {}, apply(b_in_a, middle_of(b)), gap, arcs_a);
+    find_arcs(b, b_in_a, apply_inverse(b_in_a, middle_of(a)), gap, arcs_b);
+
     Nearest3 widest;
     widest.distance = -1e300;
-    for (const Polyhedron::Edge& of_a : a.edges) {
-        const Vec3 start_a = apply(a_in_b, a.vertices[of_a.from]);
-        const Vec3 edge_a = rotate(a_in_b.rotation, a.vertices[of_a.to] - a.vertices[of_a.from]);
-        const Vec3 left_a = rotate(a_in_b.rotation, a.normals[of_a.left]);
-        const Vec3 right_a = rotate(a_in_b.rotation, a.normals[of_a.right]);
-        for (const Polyhedron::Edge& of_b : b.edges) {
-            const Vec3& start_b = b.vertices[of_b.from];
-            const Vec3 edge_b = b.vertices[of_b.to] - start_b;
-            if (!arcs_cross(edge_a, left_a, right_a, edge_b, b.normals[of_b.left], b.normals[of_b.right]))
-                continue;
-            Vec3 normal = cross(edge_a, edge_b);
+    for (const Arc& of_a : arcs_a) {
+        for (const Arc& of_b : arcs_b) {
+            if (!cross_on_gauss_map(of_a, of_b)) continue;
+            Vec3 normal = cross(of_a.along, of_b.along);
             const double size = length(normal);
-            if (size <= 1e-7 * length(edge_a) * length(edge_b)) continue;
-            normal = normal / (dot(normal, left_a + right_a) < 0 ? -size : size);
-            const double gap = dot(normal, start_b - start_a);
-            if (gap <= widest.distance) continue;
-            const SegmentPoints at = closest_on_segments(start_a, edge_a, start_b, edge_b);
+            if (size <= 1e-7 * length(of_a.along) * length(of_b.along)) continue;
+            normal = normal / (dot(normal, of_a.left + of_a.right) < 0 ? -size : size);
+            const double candidate = dot(normal, of_b.start - of_a.start);
+            if (candidate <= widest.distance) continue;
+            const SegmentPoints at = closest_on_segments(of_a.start, of_a.along, of_b.start, of_b.along);
             const bool inside = at.s > 0 && at.s < 1 && at.t > 0 && at.t < 1;
-            widest = {normal, gap, start_a + at.s * edge_a, start_b + at.t * edge_b, gap <= 0 || inside};
+            widest = {normal, candidate, of_a.start + at.s * of_a.along, of_b.start + at.t * of_b.along,
+                      candidate <= 0 || inside};
         }
     }
     return widest;
-}
-
-/// What was found in b's frame, in a's.
-Nearest3 seen_from_a(const Nearest3& found, const Transform3& b_in_a) {
-    return {rotate(b_in_a.rotation, found.normal), found.distance, apply(b_in_a, found.on_a),
-            apply(b_in_a, found.on_b), found.certain};
 }
 
 }  // namespace
@@ -92,8 +121,8 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     const Nearest3 of_b = exchanged(widest_over_faces(b, a, a_in_b, search.limit), pair.b_in_a);
     if (preferred(of_b, nearest)) nearest = of_b;
     if (nearest.distance > search.limit) return nearest;
-    const Nearest3 of_edges = widest_over_edges(a, b, a_in_b);
-    return preferred(of_edges, nearest) ? seen_from_a(of_edges, pair.b_in_a) : nearest;
+    const Nearest3 of_edges = widest_over_edges(a, b, pair.b_in_a, nearest.distance);
+    return preferred(of_edges, nearest) ? of_edges : nearest;
 }
 
 Nearest3 made_certain(const Pair3& pair, const Nearest3& found) {

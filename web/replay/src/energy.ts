@@ -9,6 +9,8 @@ import { Theme } from "./theme";
 interface Series {
     name: "kinetic" | "potential" | "total";
     values: number[];
+    /** What is drawn as nothing: height has no natural zero, so its energy is drawn from its least. */
+    floor: number;
 }
 
 export class EnergyPlot {
@@ -16,7 +18,6 @@ export class EnergyPlot {
     private readonly canvas = element("canvas");
     private readonly readings: HTMLElement[];
     private readonly series: Series[];
-    private readonly low: number;
     private readonly high: number;
     /** The curves, drawn once; the cursor is drawn over them. */
     private readonly curves = document.createElement("canvas");
@@ -28,14 +29,13 @@ export class EnergyPlot {
 
     constructor(private readonly recording: Recording) {
         const { kinetic, potential } = recording.header.energy;
+        const floor = potential.reduce((least, value) => Math.min(least, value), potential[0] ?? 0);
         this.series = [
-            { name: "potential", values: potential },
-            { name: "kinetic", values: kinetic },
-            { name: "total", values: kinetic.map((value, i) => value + potential[i]) },
+            { name: "potential", values: potential, floor },
+            { name: "kinetic", values: kinetic, floor: 0 },
+            { name: "total", values: kinetic.map((value, i) => value + potential[i]), floor },
         ];
-        const all = this.series.flatMap(({ values }) => values);
-        this.low = all.reduce((least, value) => Math.min(least, value), 0);
-        this.high = all.reduce((most, value) => Math.max(most, value), this.low + 1e-9);
+        this.high = this.series[2].values.reduce((most, value) => Math.max(most, value - floor), 1e-9);
         const rows = [...this.series].reverse().map(({ name }) => {
             const value = element("b");
             return { row: element("span", { className: name }, element("i"), name, value), value };
@@ -74,8 +74,8 @@ export class EnergyPlot {
     private drawCurves(width: number, height: number, ratio: number) {
         const context = this.curves.getContext("2d")!;
         context.clearRect(0, 0, width, height);
-        for (const { name, values } of this.series) {
-            const path = this.curve(values, width, height, ratio);
+        for (const { name, values, floor } of this.series) {
+            const path = this.curve(values, floor, width, height, ratio);
             context.lineJoin = "round";
             context.lineWidth = (name === "total" ? 1.25 : 1.75) * ratio;
             context.strokeStyle = this.color(name);
@@ -99,18 +99,18 @@ export class EnergyPlot {
 
     private heightOf(value: number, height: number, ratio: number): number {
         const margin = 3 * ratio;
-        return height - margin - ((value - this.low) / (this.high - this.low)) * (height - 2 * margin);
+        return height - margin - (value / this.high) * (height - 2 * margin);
     }
 
     /** At most one point a pixel column's least and greatest value, so that no peak is lost. */
-    private curve(values: number[], width: number, height: number, ratio: number): Path2D {
+    private curve(values: number[], floor: number, width: number, height: number, ratio: number): Path2D {
         const path = new Path2D();
         const last = Math.max(1, values.length - 1);
         const perColumn = Math.max(1, Math.floor(values.length / width));
         for (let i = 0; i < values.length; i += perColumn) {
             const part = values.slice(i, i + perColumn);
             const ends = perColumn === 1 ? part : [Math.min(...part), Math.max(...part)];
-            for (const value of ends) path.lineTo((i / last) * width, this.heightOf(value, height, ratio));
+            for (const value of ends) path.lineTo((i / last) * width, this.heightOf(value - floor, height, ratio));
         }
         return path;
     }
@@ -121,11 +121,11 @@ export class EnergyPlot {
         const x = duration > 0 ? (this.time / duration) * width : 0;
         context.fillStyle = cssColor(this.theme.text, 0.5);
         context.fillRect(Math.min(width - ratio, Math.max(0, x - ratio / 2)), 0, ratio, height);
-        this.series.forEach(({ name, values }, i) => {
+        this.series.forEach(({ name, values, floor }, i) => {
             if (values.length === 0) return;
             context.fillStyle = this.color(name);
             context.beginPath();
-            context.arc(x, this.heightOf(values[frame], height, ratio), 2.6 * ratio, 0, 2 * Math.PI);
+            context.arc(x, this.heightOf(values[frame] - floor, height, ratio), 2.6 * ratio, 0, 2 * Math.PI);
             context.fill();
             this.readings[i].textContent = withPrefix(values[frame], "J");
         });

@@ -37,8 +37,11 @@ export function bindKeys(player: Player, actions: Actions) {
         if (event.target instanceof HTMLInputElement) return;
         const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
         if (!act) return;
-        // The space bar would press the focused button as well.
         event.preventDefault();
         act(event);
+    });
+    // The space bar would press the focused button as well, when it comes up.
+    addEventListener("keyup", (event) => {
+        if (event.key === " " && event.target instanceof HTMLButtonElement) event.preventDefault();
     });
 }
