@@ -52,6 +52,7 @@ void Solver<D>::run(const SolverInput<D>& input) {
         integrate_positions();
         solve<false>();
         settle_struck<false>();
+        sum_struck();
         finish_substep();
     }
     bounce(input);
@@ -223,18 +224,23 @@ V add_precisely(const V& start, const V& change, V& lost) {
     return sum;
 }
 
+/// The velocity after outer forces and the given change by constraints.
+template <int D>
+void Solver<D>::push_velocity(Body& m, Drive& d, const Vec<D, float>& by, const Angular<D, float>& spin_by) {
+    m.v = add_precisely(d.start * d.damping, h_ * d.acceleration + by, d.lost);
+    m.w = add_precisely(d.start_spin * d.spin_damping, Angular<D, float>(h_ * d.spin_acceleration + spin_by),
+                        d.lost_spin);
+}
+
 template <int D>
 void Solver<D>::integrate_velocities() {
     for (std::size_t s = 1; s < drives_.size(); ++s) {
-        Body& m = motions_[s];
         Drive& d = drives_[s];
-        d.start = m.v;
-        d.start_spin = m.w;
+        d.start = motions_[s].v;
+        d.start_spin = motions_[s].w;
         d.lost_before = d.lost;
         d.lost_spin_before = d.lost_spin;
-        m.v = add_precisely(d.start * d.damping, h_ * d.acceleration + d.warm, d.lost);
-        m.w = add_precisely(d.start_spin * d.spin_damping,
-                            Angular<D, float>(h_ * d.spin_acceleration + d.warm_spin), d.lost_spin);
+        push_velocity(motions_[s], d, d.warm, d.warm_spin);
     }
 }
 
@@ -284,6 +290,29 @@ void Solver<D>::settle_struck() {
             solve_normals<biased>(rows_[i], ma, mb, weights_[a], weights_[b], sub_);
             solve_friction(rows_[i], ma, mb, weights_[a], weights_[b]);
         }
+    }
+}
+
+/// The many small changes of settling are each rounded to the size of the velocity. So the velocities of
+/// these bodies are made anew, in one sum, from the impulses that came out.
+template <int D>
+void Solver<D>::sum_struck() {
+    if (struck_.empty()) return;
+    struck_bodies_.assign(motions_.size(), 0);
+    for (const std::uint32_t i : struck_) struck_bodies_[pairs_[i].a] = struck_bodies_[pairs_[i].b] = 1;
+    struck_bodies_[0] = 0;
+    kept_.assign(motions_.size(), {});
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const auto [a, b] = pairs_[i];
+        if (struck_bodies_[a] || struck_bodies_[b])
+            warm_start(rows_[i], kept_[a], kept_[b], weights_[a], weights_[b]);
+    }
+    for (std::size_t s = 1; s < motions_.size(); ++s) {
+        if (!struck_bodies_[s]) continue;
+        Drive& d = drives_[s];
+        d.lost = d.lost_before;
+        d.lost_spin = d.lost_spin_before;
+        push_velocity(motions_[s], d, kept_[s].v, kept_[s].w);
     }
 }
 

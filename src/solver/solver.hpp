@@ -79,7 +79,9 @@ class Solver {
     void integrate_velocities();
     template <bool biased>
     void solve();
+    void push_velocity(Body& motion, Drive& drive, const Vec<D, float>& by, const Angular<D, float>& spin_by);
     void find_struck();
+    void sum_struck();
     template <bool biased>
     void settle_struck();
     void integrate_positions();
@@ -98,9 +100,10 @@ class Solver {
     std::vector<Drive> drives_;
     std::vector<Pair> pairs_;
     std::vector<Rows> rows_;
-    std::vector<std::uint8_t> settled_;  ///< by row: has it carried an impulse?
-    std::vector<std::uint32_t> struck_;  ///< rows that carry their first impulse in this sub-step
-    std::vector<Impact> impacts_;        ///< points with restitution
+    std::vector<std::uint8_t> settled_;        ///< by row: has it carried an impulse?
+    std::vector<std::uint32_t> struck_;        ///< rows that carry their first impulse in this sub-step
+    std::vector<std::uint8_t> struck_bodies_;  ///< by slot: has it such a row?
+    std::vector<Impact> impacts_;              ///< points with restitution
 };
 
 }  // namespace carom::detail

@@ -9,13 +9,14 @@ export class Lights extends Group {
     private readonly sun = new DirectionalLight();
     private readonly direction: Vector3; // towards the sun
 
-    constructor(up: Vector3, private readonly resolution: number) {
+    /** Without `high` quality shadows are coarser, and more light from the sky stands in for reflections. */
+    constructor(up: Vector3, private readonly high: boolean) {
         super();
         // Slantwise, so that both sides of a box that one sees are lit differently.
         this.direction = new Vector3(0.42, 0.25, 0.5).projectOnPlane(up).normalize().multiplyScalar(0.62).add(up).normalize();
         this.sky.position.copy(up);
         this.sun.castShadow = true;
-        this.sun.shadow.mapSize.set(resolution, resolution);
+        this.sun.shadow.mapSize.setScalar(high ? 2048 : 1024);
         this.sun.shadow.radius = 3;
         this.add(this.sky, this.sun, this.sun.target);
     }
@@ -24,7 +25,7 @@ export class Lights extends Group {
         const dark = theme.name === "dark";
         this.sky.color.set(dark ? "#b9c8e6" : "#ffffff");
         this.sky.groundColor.set(dark ? "#2b2a33" : "#b3a899");
-        this.sky.intensity = dark ? 0.95 : 0.85;
+        this.sky.intensity = (dark ? 0.95 : 0.85) + (this.high ? 0 : 0.5);
         this.sun.color.set(dark ? "#fff1dc" : "#fff7ea");
         this.sun.intensity = dark ? 2.3 : 1.75;
     }
@@ -44,7 +45,7 @@ export class Lights extends Group {
         camera.near = 0.5 * reach;
         camera.far = 8 * reach;
         camera.updateProjectionMatrix();
-        const texel = (2 * reach) / this.resolution;
+        const texel = (2 * reach) / this.sun.shadow.mapSize.x;
         this.sun.shadow.normalBias = 1.5 * texel;
         this.sun.shadow.bias = -0.0004;
     }

@@ -82,10 +82,10 @@ export class Scene3 implements Scene {
         this.controls.addEventListener("start", () => (this.untouched = false));
         this.controls.addEventListener("change", () => this.onChange());
 
-        const reflections = environment(this.renderer);
+        const reflections = high ? environment(this.renderer) : null;
         this.addParts();
         this.batches = new Batches(this.parts, (surface) => this.surface(surface, reflections), high);
-        this.lights = new Lights(this.up, high ? 2048 : 1024);
+        this.lights = new Lights(this.up, high);
         this.links = new LinkMarks(recording, this.size * 0.012);
         this.selection = new SelectionMarks(recording);
         this.addPlanes((surface) => this.surface(surface, reflections));
@@ -126,7 +126,7 @@ export class Scene3 implements Scene {
         );
     }
 
-    private surface(name: string, reflections: Texture): Material {
+    private surface(name: string, reflections: Texture | null): Material {
         let material = this.surfaces.get(name);
         if (!material) {
             material = surfaceMaterial(name === "fixed" ? "matte" : (name as Finish), name === "fixed", reflections);

@@ -71,7 +71,7 @@ const finishes: Record<Finish, { roughness: number; metalness: number }> = {
     metal: { roughness: 0.38, metalness: 0.4 },
 };
 
-export function surfaceMaterial(finish: Finish, gridded: boolean, environment: Texture): MeshStandardMaterial {
+export function surfaceMaterial(finish: Finish, gridded: boolean, environment: Texture | null): MeshStandardMaterial {
     const material = new MeshStandardMaterial({ ...finishes[finish], envMap: environment });
     material.defines = { ...material.defines, ...(gridded ? { GRIDDED: "" } : {}) };
     material.onBeforeCompile = (shader) => {
