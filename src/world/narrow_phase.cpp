@@ -107,11 +107,11 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
     const Vec<D> speed = sb.velocity - sa.velocity;
     constexpr double near = 0.5 * speculative_distance;
     constexpr int most_advances = 32;
-    double time = 0;
+    double elapsed = 0;
     BodyState<D> a = sa, b = sb;
     for (int i = 0; i < most_advances; ++i) {
-        a = coasted(sa, ma, definition.gravity, time);
-        b = coasted(sb, mb, definition.gravity, time);
+        a = coasted(sa, ma, definition.gravity, elapsed);
+        b = coasted(sb, mb, definition.gravity, elapsed);
         const auto gap = separate_shapes<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape,
                                             relative(frame(a, ma), frame(b, mb)));
         if (!gap) return;
@@ -122,13 +122,14 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
         }
         const double closing = turning - dot(rotate(a.rotation, gap->axis), speed);
         if (closing <= 0) return;
-        time += (gap->distance - 0.5 * near) / closing;
-        if (time > dt) return;
+        elapsed += (gap->distance - 0.5 * near) / closing;
+        if (elapsed > dt) return;
     }
     for (int i = 0; i < c.count; ++i) {
         ContactRecordPoint<D>& p = c.points[i];
         const Vec<D> arm_a = narrow<double>(p.arm_a), arm_b = narrow<double>(p.arm_b);
-        const Vec<D> turned = time * (cross(sb.angular_velocity, arm_b) - cross(sa.angular_velocity, arm_a));
+        const Vec<D> turned =
+            elapsed * (cross(sb.angular_velocity, arm_b) - cross(sa.angular_velocity, arm_a));
         const Vec<D> way = (b.position - sb.position) - (a.position - sa.position) + turned;
         p.separation -= static_cast<float>(dot(narrow<double>(c.normal), way));
     }

@@ -99,8 +99,11 @@ void add_bounces(std::vector<Result>& results, const Known& known) {
         last = seen.flights[n].height;
         worst = std::max(worst, std::fabs(last / true_height - 1));
     }
-    results.push_back({fmt::format("{}height of bounces 1 to {}, worst error (m)", what, count), true_height,
-                       last, count > 2 ? worst : 1, {1e-2, 1e-6}});
+    results.push_back({fmt::format("{}height of bounces 1 to {}, worst error (m)", what, count),
+                       true_height,
+                       last,
+                       count > 2 ? worst : 1,
+                       {1e-2, 1e-6}});
     results.push_back(relative(what + "limit of the times of the bounces (s)", known.total_time,
                                limit_of_launches(seen.flights), {1e-2, 1e-6}));
     results.push_back(absolute(what + "seen at rest, to a step (s)", known.total_time, seen.rest,
@@ -118,8 +121,11 @@ void add_perpetual(std::vector<Result>& results) {
             last = ball.apex();
             worst = std::max(worst, std::fabs(last / drop - 1));
         }
-        results.push_back({fmt::format("{}D, e = 1, h = 1/{}: energy / m g in 100 s, worst error", D, rate), 1,
-                           last, worst, {1e-2, 1e-6}});
+        results.push_back({fmt::format("{}D, e = 1, h = 1/{}: energy / m g in 100 s, worst error", D, rate),
+                           1,
+                           last,
+                           worst,
+                           {1e-2, 1e-6}});
     }
 }
 

@@ -114,7 +114,7 @@ export class Scene3 implements Scene {
                 if (shape.type !== "plane") return;
                 const side = 60 * this.size;
                 const geometry = new PlaneGeometry(side, side).toNonIndexed();
-                const mesh = new Mesh(withSurfaceAttributes(geometry), materialFor("fixed").clone());
+                const mesh = new Mesh(withSurfaceAttributes(geometry), materialFor(`fixed plane ${index}`));
                 mesh.receiveShadow = true;
                 mesh.matrixAutoUpdate = false;
                 const normal = new Vector3(...shape.normal).normalize();
@@ -129,7 +129,8 @@ export class Scene3 implements Scene {
     private surface(name: string, reflections: Texture | null): Material {
         let material = this.surfaces.get(name);
         if (!material) {
-            material = surfaceMaterial(name === "fixed" ? "matte" : (name as Finish), name === "fixed", reflections);
+            const fixed = name.startsWith("fixed");
+            material = surfaceMaterial(fixed ? "matte" : (name as Finish), fixed, reflections);
             this.surfaces.set(name, material);
         }
         return material;
