@@ -84,6 +84,7 @@ struct WorldState {
     void fly_free_bodies(double dt);
     void move_kinematic_bodies(double dt);
     void finish_bodies();
+    void quarantine(std::uint32_t body);
 
     // pairs.cpp: who is near whom.
     void refresh_boxes(double dt);

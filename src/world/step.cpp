@@ -3,6 +3,40 @@
 
 namespace carom::detail {
 
+namespace {
+
+template <int D>
+bool finite(const BodyState<D>& s) {
+    double sum = dot(s.position, s.position) + dot(s.velocity, s.velocity) +
+                 angular_dot(s.angular_velocity, s.angular_velocity);
+    if constexpr (D == 2) {
+        sum += s.rotation.c + s.rotation.s;
+    } else {
+        sum += s.rotation.x + s.rotation.y + s.rotation.z + s.rotation.w;
+    }
+    return is_finite(sum);
+}
+
+/// Faster than anything that `float` and a step can work with; whatever it swept over would be lost with it.
+template <int D>
+bool is_absurd(const BodyState<D>& s) {
+    constexpr double fastest = 1e15;  // m/s, rad/s
+    return !(dot(s.velocity, s.velocity) < fastest * fastest &&
+             angular_dot(s.angular_velocity, s.angular_velocity) < fastest * fastest);
+}
+
+}  // namespace
+
+/// Stops the body where it is and takes it out of the simulation.
+template <int D>
+void WorldState<D>::quarantine(std::uint32_t body) {
+    states[body].velocity = {};
+    states[body].angular_velocity = {};
+    infos[body].disabled = true;
+    remove_contacts_of(body);
+    quarantined.push_back(body_slots.template id<BodyId<D>>(body));
+}
+
 /// One time step, stage by stage.
 template <int D>
 void WorldState<D>::step(double dt) {
@@ -46,8 +80,10 @@ void WorldState<D>::begin_step(double) {
     for (const std::uint32_t i : awake) moving[i] = 0;
     moving.resize(states.size(), 0);
     awake.clear();
+    quarantined.clear();
     for (const std::uint32_t i : movable) {
-        if (is_moving(i)) awake.push_back(i);
+        if (is_moving(i) && is_absurd(states[i])) quarantine(i);
+        if (is_moving(i) && !infos[i].disabled) awake.push_back(i);
     }
     before.clear();
     for (const std::uint32_t i : awake) before.push_back(states[i]);
@@ -100,36 +136,15 @@ void WorldState<D>::move_kinematic_bodies(double dt) {
     }
 }
 
-namespace {
-
-template <int D>
-bool finite(const BodyState<D>& s) {
-    double sum = dot(s.position, s.position) + dot(s.velocity, s.velocity) +
-                 angular_dot(s.angular_velocity, s.angular_velocity);
-    if constexpr (D == 2) {
-        sum += s.rotation.c + s.rotation.s;
-    } else {
-        sum += s.rotation.x + s.rotation.y + s.rotation.z + s.rotation.w;
-    }
-    return is_finite(sum);
-}
-
-}  // namespace
-
 template <int D>
 void WorldState<D>::finish_bodies() {
     moved_bodies.clear();
-    quarantined.clear();
     for (std::size_t k = 0; k < awake.size(); ++k) {
         const std::uint32_t i = awake[k];
         const BodyId<D> id = body_slots.template id<BodyId<D>>(i);
         if (!finite(states[i])) {
             states[i] = before[k];
-            states[i].velocity = {};
-            states[i].angular_velocity = {};
-            infos[i].disabled = true;
-            remove_contacts_of(i);
-            quarantined.push_back(id);
+            quarantine(i);
             continue;
         }
         moved_bodies.push_back({id, infos[i].definition.user_data, frame_of(i)});
