@@ -25,7 +25,7 @@ for_run() {
     program ninja ninja-build
     program node nodejs
     program npm npm
-    program update-ca-certificates ca-certificates
+    [ -e /etc/ssl/certs/ca-certificates.crt ] || missing+=(ca-certificates) # for npm
     package libfmt-dev
     package nlohmann-json3-dev
     package libcli11-dev
@@ -54,29 +54,31 @@ test) for_test ;;
     ;;
 esac
 
-if [ ${#missing[@]} -eq 0 ]; then
-    exit 0
-fi
+install_missing() {
+    local install=(apt-get install --yes --no-install-recommends "${missing[@]}")
+    local by_hand="apt-get update && ${install[*]}"
+    local as_root=()
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+            echo "setup: these Debian packages are missing: ${missing[*]}" >&2
+            echo "setup: without root or sudo this cannot install them. Please run, as root:" >&2
+            echo "    $by_hand" >&2
+            exit 1
+        fi
+        as_root=(sudo)
+    fi
+    as_root+=(env DEBIAN_FRONTEND=noninteractive)
 
-export DEBIAN_FRONTEND=noninteractive
-install=(apt-get install --yes --no-install-recommends "${missing[@]}")
-by_hand="apt-get update && ${install[*]}"
-if [ "$(id -u)" -eq 0 ]; then
-    as_root=()
-elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
-    as_root=(sudo)
-else
-    echo "setup: these Debian packages are missing: ${missing[*]}" >&2
-    echo "setup: without root or sudo this cannot install them. Please run, as root:" >&2
-    echo "    $by_hand" >&2
-    exit 1
-fi
+    echo "setup: installing the Debian packages ${missing[*]}"
+    if ! { "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"; } >/dev/null; then
+        echo "setup: the installation failed. What it tried, to be run as root:" >&2
+        echo "    $by_hand" >&2
+        exit 1
+    fi
+}
 
-echo "setup: installing the Debian packages ${missing[*]}"
-if ! { "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"; }; then
-    echo "setup: the installation failed. What it tried, to be run as root:" >&2
-    echo "    $by_hand" >&2
-    exit 1
+if [ ${#missing[@]} -gt 0 ]; then
+    install_missing
 fi
 
 version=$(node --version)
