@@ -56,7 +56,7 @@ void turn<2>(BodyState<2>& state, const double& angle) {
         if (std::fabs(jump) > 1 && (jump > 0) == (angle > 0)) state.turns += angle > 0 ? 1 : -1;
     } else {
         const double exact = whole_angle({{}, before, {}, 0, state.turns}) + angle;
-        state.turns = static_cast<std::int32_t>(std::floor((exact - after.angle()) / (2 * pi) + 0.5));
+        state.turns = std::floor((exact - after.angle()) / (2 * pi) + 0.5);
     }
 }
 

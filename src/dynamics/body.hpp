@@ -17,7 +17,7 @@ struct BodyState {
     Rotation<D> rotation{};
     Vec<D> velocity{};
     Angular<D> angular_velocity{};
-    std::int32_t turns = 0;  ///< 2D: whole turns that `rotation` does not show
+    double turns = 0;  ///< 2D: whole turns that `rotation` does not show
 };
 
 /// What a body's motion depends on beside its state.

@@ -50,20 +50,26 @@ void expect_sound(const Scene& scene, const Manifold<3>& found, double reach) {
     }
 }
 
-/// Are the two the same but for rounding, feature by feature?
+/// Are the two the same but for rounding, feature by feature? Where features coincide, rounding may choose
+/// another of their names, for the points of one such place: two at the most.
 void expect_same(const Manifold<3>& expected, const Manifold<3>& found, double tolerance) {
     ASSERT_EQ(found.count, expected.count);
     EXPECT_GT(dot(found.normal, expected.normal), 1 - 1e-5);
+    int renamed = 0;
     for (int i = 0; i < found.count; ++i) {
         const ManifoldPoint<3>& point = found.points[static_cast<std::size_t>(i)];
         const auto end = expected.points.begin() + expected.count;
-        const auto same = std::find_if(expected.points.begin(), end, [&](const ManifoldPoint<3>& other) {
+        const auto there = [&](const ManifoldPoint<3>& other) {
             return length(other.position - point.position) <= tolerance;
-        });
+        };
+        const auto same = std::find_if(expected.points.begin(), end, there);
         ASSERT_NE(same, end) << "point " << i;
         EXPECT_NEAR(same->separation, point.separation, tolerance);
-        EXPECT_EQ(same->feature, point.feature);
+        renamed += std::none_of(expected.points.begin(), end, [&](const ManifoldPoint<3>& other) {
+            return there(other) && other.feature == point.feature;
+        });
     }
+    EXPECT_LE(renamed, found.count > 2 ? 2 : 1);
 }
 
 /// Does the answer hang on a hair: is the gap, or that of a point, the reach; or is the direction open,
