@@ -132,6 +132,8 @@ ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definit
     const Shape<D> shape = make_shape(definition);
     if (shape.kind == ShapeKind::plane && w.types[i] != BodyType::fixed)
         throw Error("geometry: a plane needs a fixed body");
+    if (shape.kind == ShapeKind::terrain && w.types[i] == BodyType::dynamic)
+        throw Error("geometry: a chain, mesh or height field needs a fixed or kinematic body");
     const ShapeId<D> id = put_shape(w, i, definition);
     w.update_mass(i);
     w.insert_leaf(id.index);
@@ -238,6 +240,8 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         definitions.push_back(w.shapes[id.index].definition);
         if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
             throw Error("type: a body with a plane must be fixed");
+        if (w.shapes[id.index].shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+            throw Error("type: a body with a chain, mesh or height field must be fixed or kinematic");
     }
     BodyDefinition<D> changed = w.infos[i].definition;
     changed.type = type;

@@ -37,6 +37,8 @@ void validate(const BodyDefinition<D>& b) {
             const Shape<D> shape = make_shape(b.shapes[i]);
             if (shape.kind == ShapeKind::plane && b.type != BodyType::fixed)
                 throw Error("geometry: a plane needs a fixed body");
+            if (shape.kind == ShapeKind::terrain && b.type == BodyType::dynamic)
+                throw Error("geometry: a chain, mesh or height field needs a fixed or kinematic body");
         });
     }
     body_mass<D>(b, b.shapes);
