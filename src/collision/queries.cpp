@@ -43,7 +43,9 @@ bool overlap(const Solid<D>& a, const Transform<D>& a_placed, const Solid<D>& b,
              const Transform<D>& b_placed) {
     const Transform<D> b_in_a = checked_relative(a_placed, b_placed);
     const auto found = detail::separate_shapes(a.shape(), b.shape(), b_in_a);
-    return found ? found->distance <= 0 : planes_overlap(a.shape(), b.shape(), b_in_a);
+    if (found) return found->distance <= 0;
+    return a.shape().kind == detail::ShapeKind::plane && b.shape().kind == detail::ShapeKind::plane &&
+           planes_overlap(a.shape(), b.shape(), b_in_a);
 }
 
 template <int D>

@@ -293,6 +293,8 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         definitions.push_back(w.shapes[id.index].definition);
         if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
             throw Error("type: a body with a plane must be fixed");
+        if (w.shapes[id.index].shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+            throw Error("type: a body with a chain, mesh or height field must be fixed or kinematic");
     }
     BodyDefinition<D> changed = w.infos[i].definition;
     changed.type = type;

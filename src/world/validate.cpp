@@ -25,6 +25,8 @@ template <int D>
 void require_place_for(const Shape<D>& shape, BodyType type) {
     if (shape.kind == ShapeKind::plane && type != BodyType::fixed)
         throw Error("geometry: a plane needs a fixed body");
+    if (shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+        throw Error("geometry: a chain, mesh or height field needs a fixed or kinematic body");
 }
 
 template <int D>
