@@ -130,8 +130,8 @@ struct Folder {
     }
     template <int D>
     void operator()(const ContactRecord<D>& c) {
-        all(c.shape_a, c.shape_b, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse, c.touching,
-            c.passing, c.merged);
+        all(c.shape_a, c.shape_b, c.facet, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse,
+            c.touching, c.passing, c.merged);
         for (int i = 0; i < c.count; ++i) all(c.points[i].impulse, c.points[i].feature, c.points[i].arm_a);
     }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
