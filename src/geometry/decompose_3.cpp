@@ -132,8 +132,19 @@ struct Piece {
 
 using Halves = std::array<Piece, 2>;
 
+/// Area by which the surface is closed in the plane p[axis] = level.
+double cut_area(const Surface& surface, int axis, double level) {
+    double twice = 0;
+    for (const Triangle& t : surface) {
+        const auto& [p, q, r] = t.corners;
+        if (t.closes_cut && p[axis] == level && q[axis] == level && r[axis] == level)
+            twice += cross(q - p, r - p)[axis];
+    }
+    return 0.5 * std::fabs(twice);
+}
+
 /// The two parts of the piece that have the least empty room in their hulls together. Where several cuts are
-/// about as good, and where none helps at first, as with a ring, even parts are preferred.
+/// about as good, and where none helps at first, as with a ring, even parts and small cuts are preferred.
 std::optional<Halves> best_cut(const Piece& piece, int planes) {
     Aabb<3> box{piece.corners[0], piece.corners[0]};
     for (const Vec3& p : piece.corners) {
@@ -143,7 +154,9 @@ std::optional<Halves> best_cut(const Piece& piece, int planes) {
         }
     }
     std::optional<Halves> best;
-    constexpr double evenness = 0.05;
+    constexpr double preference = 0.05;
+    const Vec3 size = box.upper - box.lower;
+    const double mean_size = (size.x + size.y + size.z) / 3;
     double least = 1e300;
     for (int axis = 0; axis < 3; ++axis) {
         for (int k = 1; k <= planes; ++k) {
@@ -151,8 +164,10 @@ std::optional<Halves> best_cut(const Piece& piece, int planes) {
             Halves halves{Piece(half(piece.surface, axis, level, -1)),
                           Piece(half(piece.surface, axis, level, 1))};
             if (halves[0].corners.empty() || halves[1].corners.empty()) continue;
-            const double cost = halves[0].excess + halves[1].excess +
-                                evenness * std::fabs(halves[0].hull_volume - halves[1].hull_volume);
+            const double cost =
+                halves[0].excess + halves[1].excess +
+                preference * (std::fabs(halves[0].hull_volume - halves[1].hull_volume) +
+                              mean_size * cut_area(halves[0].surface, axis, level));
             if (cost >= least) continue;
             least = cost;
             best = std::move(halves);
