@@ -44,8 +44,8 @@ class FacetTree {
   private:
     using Lanes = std::array<std::uint8_t, width>;
     /// A child is the index of a node or, with `leaf_bit`, a run of `order_`: the number of its items less
-    /// one in two bits, then its start. Where there are fewer than eight children, the boxes of the rest are
-    /// inside out.
+    /// one in two bits, then its start. Where there are fewer than eight children, the boxes of the rest
+    /// begin at 255 and end at 0; no other box begins beyond 254.
     struct Node {
         Vec<D> origin{}, step{};
         std::array<Lanes, D> lower{}, upper{};
@@ -83,7 +83,7 @@ std::uint32_t FacetTree<D>::overlapped(const Node& node, const Aabb<D>& box) {
         const double to = (box.upper[i] - node.origin[i]) / node.step[i] * (1 + 1e-14);
         if (!(from <= 255 && to >= 0)) return 0;
         low[i] = std::uint8_t(std::max(std::ceil(from), 0.0));
-        high[i] = std::uint8_t(std::min(to, 255.0));
+        high[i] = std::uint8_t(std::min(to, 254.0));
     }
     Lanes hit;
     for (int k = 0; k < width; ++k) hit[k] = node.lower[0][k] <= high[0] && node.upper[0][k] >= low[0];

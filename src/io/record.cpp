@@ -72,12 +72,22 @@ void add_facet(ReplayGround& ground, std::vector<std::uint32_t> corners) {
     ground.facets.push_back(std::move(corners));
 }
 
+/// What stands for a hole lies at the height of another point, so that it does not widen the view.
+ReplayGround filled(ReplayGround ground) {
+    double height = 0;
+    for (const ReplayVector& point : ground.points)
+        if (!std::isnan(point[1])) height = point[1];
+    for (ReplayVector& point : ground.points)
+        if (std::isnan(point[1])) point[1] = height;
+    return ground;
+}
+
 ReplayGround ground_of(const HeightField2& field) {
     ReplayGround ground;
     for (std::size_t i = 0; i < field.heights.size(); ++i)
         ground.points.push_back({static_cast<double>(i) * field.spacing[0], field.heights[i], 0});
     for (std::uint32_t i = 0; i + 1 < field.heights.size(); ++i) add_facet(ground, {i, i + 1});
-    return ground;
+    return filled(std::move(ground));
 }
 
 ReplayGround ground_of(const HeightField3& field) {
@@ -96,7 +106,7 @@ ReplayGround ground_of(const HeightField3& field) {
             add_facet(ground, {here, below + 1, here + 1});
         }
     }
-    return ground;
+    return filled(std::move(ground));
 }
 
 template <int D>

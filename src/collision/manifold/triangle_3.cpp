@@ -122,8 +122,11 @@ Nearest3 triangle_point(const Triangle& triangle, const Vec3& p) {
         least = length_squared(p - q);
         closest = q;
     }
+    // A point on the edge has no direction from it but for rounding.
     const double distance = std::sqrt(least);
-    const Vec3 normal = distance > 0 ? (p - closest) / distance : triangle.normal;
+    const bool touching =
+        distance <= 1e-12 * (length(p) + length(closest)) + 1e-10 * core_extent(triangle.shape);
+    const Vec3 normal = touching ? triangle.normal : (p - closest) / distance;
     return {normal, distance, closest, p};
 }
 
@@ -231,7 +234,9 @@ Nearest3 triangle_revolved(const Triangle& triangle, const Shape<3>& shape, cons
         offer(cross(along, shape.b));
         offer(from_middle - dot(from_middle, shape.b) * shape.b);
     }
-    return widest.result();
+    Nearest3 result = widest.result();
+    result.certain = false;
+    return result;
 }
 
 Nearest3 nearest_to(const Triangle& triangle, const Pair3& pair, const Search3& search) {
