@@ -64,6 +64,12 @@ ClosestPoints<D> closest_points(const Shape<D>& a, const Shape<D>& b, const Tran
 }
 
 template <int D>
+bool overlap_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a) {
+    const auto found = separate_shapes(a, b, b_in_a);
+    return (found ? found->distance : closest_points(a, b, b_in_a).distance) <= 0;
+}
+
+template <int D>
 double core_reach(const Shape<D>& shape, const Vec<D>& center) {
     switch (shape.kind) {
         case ShapeKind::ball:
@@ -97,6 +103,8 @@ double size_of(const Shape<D>& shape) {
 
 template ClosestPoints<2> closest_points(const Shape<2>&, const Shape<2>&, const Transform<2>&);
 template ClosestPoints<3> closest_points(const Shape<3>&, const Shape<3>&, const Transform<3>&);
+template bool overlap_shapes(const Shape<2>&, const Shape<2>&, const Transform<2>&);
+template bool overlap_shapes(const Shape<3>&, const Shape<3>&, const Transform<3>&);
 template double core_reach(const Shape<2>&, const Vec<2>&);
 template double core_reach(const Shape<3>&, const Vec<3>&);
 template double size_of(const Shape<2>&);

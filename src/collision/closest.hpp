@@ -9,6 +9,10 @@ namespace carom::detail {
 template <int D>
 ClosestPoints<D> closest_points(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a);
 
+/// Do two shapes overlap or touch?
+template <int D>
+bool overlap_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a);
+
 /// Radius of a ball about the point `center` of the body that holds the core of the shape (see
 /// `core_support`). Not for planes.
 template <int D>

@@ -72,9 +72,7 @@ Solid<D>::Solid(const Geometry<D>& geometry) : Solid(ShapeDefinition<D>{.geometr
 template <int D>
 bool overlap(const Solid<D>& a, const Transform<D>& a_placed, const Solid<D>& b,
              const Transform<D>& b_placed) {
-    const Transform<D> b_in_a = checked_relative(a_placed, b_placed);
-    const auto found = detail::separate_shapes(a.shape(), b.shape(), b_in_a);
-    return (found ? found->distance : detail::closest_points(a.shape(), b.shape(), b_in_a).distance) <= 0;
+    return detail::overlap_shapes(a.shape(), b.shape(), checked_relative(a_placed, b_placed));
 }
 
 template <int D>
