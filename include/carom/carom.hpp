@@ -5,6 +5,7 @@
 #include "carom/collide.hpp"
 #include "carom/driver.hpp"
 #include "carom/error.hpp"
+#include "carom/events.hpp"
 #include "carom/forces.hpp"
 #include "carom/ids.hpp"
 #include "carom/inertia.hpp"

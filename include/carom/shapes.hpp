@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -95,6 +96,14 @@ struct ShapeDefinition {
     Rotation<D> rotation{};  ///< turn of the shape's frame in the body's frame; unit length
     Material material{};
     Filter filter{};
+    /// Notices what overlaps it, touches nothing and has no mass. Sensors do not notice one another.
+    bool sensor = false;
+    /// The side (in the shape's frame, any length but zero) from which others land on the shape: whoever
+    /// comes from elsewhere passes through until it has left the shape.
+    std::optional<Vec<D>> one_way{};
+    /// Velocity of the surface against the body, in the shape's frame, m/s: a conveyor belt. What lies on it
+    /// is dragged along by friction; only the part along the surface counts.
+    Vec<D> surface_velocity{};
     std::uint64_t user_data = 0;  ///< yours
 };
 

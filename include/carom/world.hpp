@@ -9,6 +9,7 @@
 
 #include "carom/body.hpp"
 #include "carom/collide.hpp"
+#include "carom/events.hpp"
 #include "carom/forces.hpp"
 #include "carom/queries.hpp"
 
@@ -43,6 +44,7 @@ struct WorldDefinition {
     bool sleep = true;                 ///< bodies at rest may fall asleep
     bool continuous = true;            ///< fast bodies do not pass through fixed ones
     double restitution_threshold = 1;  ///< m/s: slower impacts do not bounce; not negative
+    double hit_speed = 1;              ///< m/s: faster impacts are reported as hits; not negative
 };
 
 using WorldDefinition2 = WorldDefinition<2>;
@@ -123,6 +125,11 @@ class World {
     ShapeId<D> add_shape(BodyId<D> body, const ShapeDefinition<D>& definition);
     /// Takes a shape off its body.
     void remove_shape(ShapeId<D> shape);
+    /// Makes the shape another one in its place; the handle stays, and so do impulses where the features are
+    /// the same. Mass properties follow unless they were overridden.
+    void set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition);
+    /// Switches collision between two bodies off (`false`) or on again. Sensors notice them all the same.
+    void set_collision(BodyId<D> a, BodyId<D> b, bool enabled);
     /// Adds a generator of forces.
     ForceId<D> add_force(const ForceDefinition<D>& definition);
     void remove_force(ForceId<D> force);
@@ -193,6 +200,14 @@ class World {
     std::span<const MovedBody<D>> moved_bodies() const;
     /// The contacts of the last step that carry points, in a reproducible order.
     std::vector<Contact<D>> contacts() const;
+    /// What began, ended and hit in the last step.
+    std::span<const ContactBegin<D>> contact_begins() const;
+    std::span<const ContactEnd<D>> contact_ends() const;
+    std::span<const ContactHit<D>> contact_hits() const;
+    std::span<const SensorBegin<D>> sensor_begins() const;
+    std::span<const SensorEnd<D>> sensor_ends() const;
+    /// The shapes that overlapped the sensor at the end of the last step, in the order of their places.
+    std::vector<ShapeId<D>> inside(ShapeId<D> sensor) const;
     /// Bodies whose state turned non-finite in the last step: they were put back to their last finite state
     /// and disabled, and the rest goes on.
     std::span<const BodyId<D>> quarantined() const;

@@ -36,6 +36,25 @@ struct ContactRecord {
     Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
     float twist_impulse = 0;           ///< 3D: friction about the normal in the last sub-step, N·m·s
     Vec<D, float> total_friction{};    ///< on b through the whole step, N·s
+    Vec<D, float> surface_velocity{};  ///< of b's surface against a's beside that of the bodies, m/s
+    bool touching = false;             ///< as last reported by an event
+    bool passing = false;              ///< through a one-way shape
+    bool merged = false;               ///< its points are kept by another contact of the same patch
+    float nearest = 0;                 ///< if merged: the smallest separation of its own points, m
 };
+
+/// The contact with a and b exchanged.
+template <int D>
+ContactRecord<D> exchanged(ContactRecord<D> contact);
+
+/// Points of the last step and of this one are the same when they belong to the same features; where two
+/// features meet the name may change from step to step, and then the nearest point that is left counts, if it
+/// is within this share of the smaller body's radius.
+constexpr double near_share = 0.1;
+
+/// Gives the contact the impulses that it had in the last step, when it was `old`. Points are near each other
+/// when their arms on a (`on_b`: on b) differ by less than `near`.
+template <int D>
+void carry_impulses(const ContactRecord<D>& old, ContactRecord<D>& now, double near, bool on_b);
 
 }  // namespace carom::detail

@@ -11,6 +11,8 @@ namespace {
 /// A rounded box keeps a core of at least this share of its size, so that opposite faces stay two.
 constexpr double thinnest_core = 1e-3;
 
+constexpr double fastest_surface = 1e6;  // m/s
+
 void require_length(double value, std::string_view field) {
     require_positive(value, field);
     require_in(value, shortest_length, longest_length, field);
@@ -242,6 +244,11 @@ Shape<D> make_shape(const ShapeDefinition<D>& definition) {
     check_material(definition.material);
     require_place(definition.center, "center");
     require_unit(definition.rotation, "rotation");
+    require_in(definition.surface_velocity, -fastest_surface, fastest_surface, "surface_velocity");
+    if (definition.one_way) {
+        require_place(*definition.one_way, "one_way");
+        if (length(*definition.one_way) < shortest_length) throw Error("one_way: a direction has a length");
+    }
     const Transform<D> placed{definition.center, normalized(definition.rotation)};
     Shape<D> shape;
     std::visit([&](const auto& geometry) { fill(shape, geometry, placed); }, definition.geometry);
@@ -284,8 +291,40 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
     return {};
 }
 
+template <int D>
+std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& direction) {
+    constexpr double facing_cosine = 0.999;
+    FacePlane<D> best;
+    double most = facing_cosine;
+    const auto offer = [&](const Vec<D>& normal, double offset) {
+        const double cosine = dot(normal, direction);
+        if (cosine <= most) return;
+        most = cosine;
+        best = {normal, offset};
+    };
+    if (shape.kind == ShapeKind::plane) offer(shape.a, shape.offset);
+    if constexpr (D == 3) {
+        if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone) {
+            offer(-shape.b, shape.half_height - dot(shape.b, shape.a));
+            if (shape.kind == ShapeKind::cylinder) offer(shape.b, shape.half_height + dot(shape.b, shape.a));
+        }
+    }
+    if (shape.core) {
+        for (std::size_t i = 0; i < shape.core->normals.size(); ++i) {
+            const Vec<D>& normal = shape.core->normals[i];
+            if constexpr (D == 2)
+                offer(normal, dot(normal, shape.core->vertices[i]) + shape.radius);
+            else
+                offer(normal, shape.core->offsets[i] + shape.radius);
+        }
+    }
+    return most > facing_cosine ? std::optional(best) : std::nullopt;
+}
+
 template Shape<2> make_shape(const ShapeDefinition<2>&);
 template Shape<3> make_shape(const ShapeDefinition<3>&);
+template std::optional<FacePlane<2>> facing_plane(const Shape<2>&, const Vec<2>&);
+template std::optional<FacePlane<3>> facing_plane(const Shape<3>&, const Vec<3>&);
 template Aabb<2> bounds(const Shape<2>&, const Transform<2>&);
 template Aabb<3> bounds(const Shape<3>&, const Transform<3>&);
 template Vec<2> core_support(const Shape<2>&, const Vec<2>&);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "carom/mass.hpp"
@@ -74,6 +75,16 @@ Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed);
 /// without `radius` for ball, capsule, box and hull (their core only). Not for planes.
 template <int D>
 Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction);
+
+/// The flat face of the shape, rounding included, that looks most along the unit vector `direction` (in the
+/// body's frame): its plane n · x = offset. Nothing when that is more than 2.5 degrees off.
+template <int D>
+struct FacePlane {
+    Vec<D> normal{};
+    double offset = 0;
+};
+template <int D>
+std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& direction);
 
 /// The radius by which the core of `core_support` is grown: zero for cylinder and cone.
 template <int D>

@@ -118,10 +118,17 @@ void read_shape(const Value& value, const Materials& materials, ShapeDefinition<
     };
     const Fields placed = {field("type", [](const Value&) {}), field("center", shape.center),
                            orientation<D>(shape.rotation)};
+    // A number is a speed along the shape's x axis.
+    const auto surface_velocity = [&](const Value& value) {
+        if (value.json().is_number())
+            read(value, shape.surface_velocity.x);
+        else
+            read(value, shape.surface_velocity);
+    };
     // The named material comes before the fields that may change it.
-    const Fields contact = {field("category", shape.filter.category), field("mask", shape.filter.mask),
-                            field("group", shape.filter.group),       not_supported("sensor", false),
-                            not_supported("surface_velocity", 0),     not_supported("one_way")};
+    const Fields contact = {field("category", shape.filter.category),    field("mask", shape.filter.mask),
+                            field("group", shape.filter.group),          field("sensor", shape.sensor),
+                            field("surface_velocity", surface_velocity), field("one_way", shape.one_way)};
     read_object(value, placed + of_type + Fields{field("material", material)} +
                            material_fields(shape.material) + contact);
 }

@@ -64,6 +64,7 @@ struct ContactRows {
     std::array<F, D - 1> friction_impulse{};
     std::array<F, D - 1> total_friction{};  ///< sum over the sub-steps
     F roundness_a{}, roundness_b{};
+    Vec<D, F> surface_velocity{};  ///< of b's surface against a's, across the normal
     F friction{};
     F twist_mass{}, twist_impulse{};  ///< 3D
     Inertia<D, F> rolling_mass{};
@@ -187,7 +188,7 @@ void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const
 template <class F>
 void solve_patch(ContactRows<2, F>& c, Motion<2, F>& a, Motion<2, F>& b, const Weight<2, F>& wa,
                  const Weight<2, F>& wb, F normal_impulse) {
-    const F speed = dot(c.tangents[0], relative_velocity(a, b, c.arm_a, c.arm_b));
+    const F speed = dot(c.tangents[0], relative_velocity(a, b, c.arm_a, c.arm_b) + c.surface_velocity);
     const F limit = c.friction * normal_impulse;
     const F old = c.friction_impulse[0];
     const F next = maximum(-limit, minimum(limit, old - c.patch_mass[0] * speed));
@@ -198,7 +199,7 @@ void solve_patch(ContactRows<2, F>& c, Motion<2, F>& a, Motion<2, F>& b, const W
 template <class F>
 void solve_patch(ContactRows<3, F>& c, Motion<3, F>& a, Motion<3, F>& b, const Weight<3, F>& wa,
                  const Weight<3, F>& wb, F normal_impulse) {
-    const Vec<3, F> v = relative_velocity(a, b, c.arm_a, c.arm_b);
+    const Vec<3, F> v = relative_velocity(a, b, c.arm_a, c.arm_b) + c.surface_velocity;
     const F v1 = dot(c.tangents[0], v), v2 = dot(c.tangents[1], v);
     const F old1 = c.friction_impulse[0], old2 = c.friction_impulse[1];
     F next1 = old1 - (c.patch_mass[0] * v1 + c.patch_mass[1] * v2);

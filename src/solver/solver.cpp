@@ -133,6 +133,7 @@ void Solver<D>::prepare_contact(const ContactRecord<D>& record, Rows& rows, std:
     rows.tangents = tangents<D>(record.normal);
     rows.friction = record.friction;
     rows.rolling = record.rolling;
+    rows.surface_velocity = record.surface_velocity;
     rows.roundness_a = record.roundness_a;
     rows.roundness_b = record.roundness_b;
     const bool one_is_heavy = wa.mass == Vec<D, float>{} || wb.mass == Vec<D, float>{};

@@ -78,11 +78,18 @@ void WorldState<D>::refresh_boxes(double dt) {
     }
 }
 
+/// May the two shapes touch, or where one is a sensor, notice each other?
 template <int D>
-bool WorldState<D>::may_collide(std::uint32_t shape_a, std::uint32_t shape_b) const {
+bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const {
     const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
     if (a.body == b.body || infos[a.body].disabled || infos[b.body].disabled) return false;
-    if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
+    if (a.definition.sensor || b.definition.sensor) {
+        if (a.definition.sensor && b.definition.sensor) return false;
+        if (types[a.body] == BodyType::fixed && types[b.body] == BodyType::fixed) return false;
+    } else {
+        if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
+        if (std::ranges::binary_search(infos[a.body].ignored, b.body)) return false;
+    }
     const Filter &fa = a.definition.filter, &fb = b.definition.filter;
     if (fa.group == fb.group && fa.group != 0) return fa.group > 0;
     return (fa.mask & fb.category) != 0 && (fb.mask & fa.category) != 0;
@@ -98,7 +105,7 @@ void WorldState<D>::find_pairs() {
         if (!shape_slots.in_use(shape) || s.leaf == Tree<D>::none) continue;
         const auto meet = [&](std::uint32_t other) {
             const std::uint32_t a = std::min(shape, other), b = std::max(shape, other);
-            if (shape != other && may_collide(a, b) && !pairs.contains(a, b))
+            if (shape != other && may_meet(a, b) && !pairs.contains(a, b))
                 new_pairs.push_back(std::uint64_t{a} << 32 | b);
         };
         const Aabb<D>& box = fat_box(s);
@@ -111,19 +118,37 @@ void WorldState<D>::find_pairs() {
     std::sort(new_pairs.begin(), new_pairs.end());
     new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
     for (const std::uint64_t pair : new_pairs) {
-        ContactRecord<D> c;
-        c.shape_a = static_cast<std::uint32_t>(pair >> 32);
-        c.shape_b = static_cast<std::uint32_t>(pair);
-        c.body_a = shapes[c.shape_a].body;
-        c.body_b = shapes[c.shape_b].body;
-        const Material &a = shapes[c.shape_a].definition.material, &b = shapes[c.shape_b].definition.material;
-        c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
-        c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
-        const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
-        c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
-        contacts.push_back(c);
-        pairs.insert(c.shape_a, c.shape_b);
+        const auto a = static_cast<std::uint32_t>(pair >> 32), b = static_cast<std::uint32_t>(pair);
+        pairs.insert(a, b);
+        if (shapes[a].definition.sensor) {
+            sensor_pairs.push_back({a, b});
+        } else if (shapes[b].definition.sensor) {
+            sensor_pairs.push_back({b, a});
+        } else {
+            contacts.push_back(new_contact(a, b));
+        }
     }
+}
+
+template <int D>
+ContactRecord<D> WorldState<D>::new_contact(std::uint32_t shape_a, std::uint32_t shape_b) const {
+    ContactRecord<D> c;
+    c.shape_a = shape_a;
+    c.shape_b = shape_b;
+    c.body_a = shapes[shape_a].body;
+    c.body_b = shapes[shape_b].body;
+    set_surface(c);
+    return c;
+}
+
+/// What the materials of the two shapes make of their contact.
+template <int D>
+void WorldState<D>::set_surface(ContactRecord<D>& c) const {
+    const Material &a = shapes[c.shape_a].definition.material, &b = shapes[c.shape_b].definition.material;
+    c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
+    c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
+    const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
+    c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
 }
 
 template <int D>
@@ -133,13 +158,50 @@ void WorldState<D>::drop_pairs() {
         const bool near = overlaps(fat_box(shapes[c.shape_a]), fat_box(shapes[c.shape_b]));
         near ? void(++i) : remove_contact(i);
     }
+    for (std::size_t i = 0; i < sensor_pairs.size();) {
+        const SensorPair& pair = sensor_pairs[i];
+        const bool near = overlaps(fat_box(shapes[pair.sensor]), fat_box(shapes[pair.visitor]));
+        near ? void(++i) : remove_visit(i);
+    }
 }
 
 template <int D>
 void WorldState<D>::remove_contact(std::size_t contact) {
-    pairs.erase(contacts[contact].shape_a, contacts[contact].shape_b);
+    const ContactRecord<D>& c = contacts[contact];
+    pairs.erase(c.shape_a, c.shape_b);
+    if (c.touching) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
     contacts[contact] = contacts.back();
     contacts.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
+    for (std::size_t i = 0; i < contacts.size();) {
+        const bool its_own = contacts[i].shape_a == shape || contacts[i].shape_b == shape;
+        its_own ? remove_contact(i) : void(++i);
+    }
+}
+
+template <int D>
+void WorldState<D>::place_visits_anew(std::uint32_t shape) {
+    for (SensorPair& pair : sensor_pairs) pair.placed_anew |= pair.sensor == shape || pair.visitor == shape;
+}
+
+template <int D>
+void WorldState<D>::remove_visit(std::size_t sensor_pair) {
+    const SensorPair& pair = sensor_pairs[sensor_pair];
+    pairs.erase(pair.sensor, pair.visitor);
+    if (pair.inside) dropped_visits.push_back({names(pair.sensor, pair.visitor)});
+    sensor_pairs[sensor_pair] = sensor_pairs.back();
+    sensor_pairs.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_visits_of(std::uint32_t shape) {
+    for (std::size_t i = 0; i < sensor_pairs.size();) {
+        const bool its_own = sensor_pairs[i].sensor == shape || sensor_pairs[i].visitor == shape;
+        its_own ? remove_visit(i) : void(++i);
+    }
 }
 
 template <int D>
@@ -159,6 +221,10 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
     template void WorldState<D>::find_pairs();                                   \
     template void WorldState<D>::drop_pairs();                                   \
     template void WorldState<D>::remove_contact(std::size_t);                    \
+    template void WorldState<D>::remove_visits_of(std::uint32_t);                \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);        \
+    template void WorldState<D>::place_visits_anew(std::uint32_t);               \
+    template void WorldState<D>::set_surface(ContactRecord<D>&) const;           \
     template void WorldState<D>::remove_contacts_of(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -54,6 +54,8 @@ void WorldState<D>::step(double dt) {
     fly_free_bodies(dt);        // all others: the integrator
     move_kinematic_bodies(dt);  // what only the user moves
     finish_bodies();            // quarantine, list of moved bodies
+    report_contacts();          // what began, ended and hit
+    sense();                    // who is inside the sensors
     fall_asleep(dt);            // islands at rest
 
     time += dt;

@@ -11,6 +11,7 @@ void validate(const WorldDefinition<D>& w) {
     require_finite(w.gravity, "gravity");
     require_in(w.substeps, 1, 64, "substeps");
     require_not_negative(w.restitution_threshold, "restitution_threshold");
+    require_not_negative(w.hit_speed, "hit_speed");
 }
 
 void validate_inertia(double inertia) { require_positive(inertia, "inertia"); }
@@ -18,6 +19,12 @@ void validate_inertia(double inertia) { require_positive(inertia, "inertia"); }
 void validate_inertia(const Symmetric3<double>& inertia) {
     require_finite(inertia, "inertia");
     if (!is_positive_definite(inertia)) throw Error("inertia: the matrix is not positive definite");
+}
+
+template <int D>
+void require_place_for(const Shape<D>& shape, BodyType type) {
+    if (shape.kind == ShapeKind::plane && type != BodyType::fixed)
+        throw Error("geometry: a plane needs a fixed body");
 }
 
 template <int D>
@@ -33,11 +40,8 @@ void validate(const BodyDefinition<D>& b) {
     require_not_negative(b.linear_damping, "linear_damping");
     require_not_negative(b.angular_damping, "angular_damping");
     for (std::size_t i = 0; i < b.shapes.size(); ++i) {
-        within("shapes[" + std::to_string(i) + "].", [&] {
-            const Shape<D> shape = make_shape(b.shapes[i]);
-            if (shape.kind == ShapeKind::plane && b.type != BodyType::fixed)
-                throw Error("geometry: a plane needs a fixed body");
-        });
+        within("shapes[" + std::to_string(i) + "].",
+               [&] { require_place_for(make_shape(b.shapes[i]), b.type); });
     }
     body_mass<D>(b, b.shapes);
 }
@@ -76,6 +80,8 @@ void validate(const ForceDefinition<D>& f) {
     std::visit(check, f.kind);
 }
 
+template void require_place_for(const Shape<2>&, BodyType);
+template void require_place_for(const Shape<3>&, BodyType);
 template void validate(const WorldDefinition<2>&);
 template void validate(const WorldDefinition<3>&);
 template void validate(const BodyDefinition<2>&);
