@@ -31,6 +31,9 @@ class Solid {
     std::shared_ptr<const detail::Shape<D>> shape_;
 };
 
+using Solid2 = Solid<2>;
+using Solid3 = Solid<3>;
+
 /// The direction in which two shapes are nearest to being apart.
 template <int D>
 struct Separation {

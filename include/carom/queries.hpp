@@ -14,7 +14,8 @@ template <int D>
 struct QueryFilter {
     std::uint64_t category = ~std::uint64_t{0};
     std::uint64_t mask = ~std::uint64_t{0};
-    BodyId<D> ignored{};  ///< a body that is not seen, or none: for a query that starts in it
+    bool sensors = false;  ///< are sensors seen?
+    BodyId<D> ignored{};   ///< a body that is not seen, or none: for a query that starts in it
     /// When given, only shapes for which it says true are seen. Batches may call it from several threads.
     std::function<bool(ShapeId<D>)> accepts{};
 };

@@ -118,6 +118,7 @@ template <int D>
 bool WorldState<D>::is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const {
     const ShapeRecord<D>& s = shapes[shape];
     const Filter& own = s.definition.filter;
+    if (s.definition.sensor && !filter.sensors) return false;
     if ((own.category & filter.mask) == 0 || (own.mask & filter.category) == 0) return false;
     if (infos[s.body].disabled || (filter.ignored && filter.ignored.index == s.body)) return false;
     return !filter.accepts || filter.accepts(shape_slots.template id<ShapeId<D>>(shape));

@@ -78,6 +78,7 @@ World<D> any_world(Dice& dice, const Vec<D>& base, int bodies) {
             ShapeDefinition<D> shape = shape_of<D>(any_geometry<D>(dice));
             shape.center = dice.in_cube<D>(1);
             shape.rotation = dice.rotation<D>();
+            shape.sensor = dice.below(5) == 0;
             shape.filter.category = std::uint64_t{1} << dice.below(4);
             shape.filter.mask = dice.below(2) ? ~std::uint64_t{0} : std::uint64_t(dice.below(16));
             body.shapes.push_back(shape);
@@ -102,6 +103,7 @@ std::vector<Placed<D>> all_shapes(const World<D>& world, const QueryFilter<D>& f
     for (const BodyId<D>& body : world.bodies()) {
         for (const ShapeId<D>& id : world.shapes(body)) {
             const Filter& own = world.shape(id).filter;
+            if (world.shape(id).sensor && !filter.sensors) continue;
             if (!(own.category & filter.mask) || !(own.mask & filter.category)) continue;
             if (filter.ignored == body || (filter.accepts && !filter.accepts(id))) continue;
             result.push_back({id, body, Solid<D>(world.shape(id)), world.transform(body)});
@@ -209,7 +211,7 @@ TYPED_TEST(WorldQueriesTest, answer_as_trying_every_shape_does) {
         const QueryFilter<D> filters[] = {
             {},
             {.category = 2, .mask = 5},
-            {.ignored = ignored},
+            {.sensors = true, .ignored = ignored},
             {.accepts = [](ShapeId<D> id) { return id.index % 3 == 0; }},
         };
         for (int round = 0; round < 60; ++round) {
