@@ -11,6 +11,7 @@
 #include "carom/ids.hpp"
 #include "carom/inertia.hpp"
 #include "carom/mass.hpp"
+#include "carom/queries.hpp"
 #include "carom/rotation.hpp"
 #include "carom/shapes.hpp"
 #include "carom/transform.hpp"

@@ -192,6 +192,18 @@ struct WorldState {
     void fall_asleep(double dt);
     void join_islands();
 
+    // queries.cpp: questions between steps.
+    void keep_in_boxes(double dt);
+    bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;
+    Transform<D> placement_of(std::uint32_t shape) const { return frame_of(shapes[shape].body); }
+    WorldHit<D> named(std::uint32_t shape, const CastHit<D>& hit) const;
+    template <class Visitor>
+    void cast_through_trees(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half,
+                            Visitor&& visit) const;
+    template <class Test>
+    std::vector<ShapeId<D>> shapes_in(const Aabb<D>& box, const QueryFilter<D>& filter,
+                                      const Test& test) const;
+
     // mass.cpp
     void update_mass(std::uint32_t body);
 
