@@ -31,6 +31,9 @@ struct ContactRecord {
           roundness_b = 0;   ///< radius with which each shape rolls here, m; 0 for a corner or a face
     float rolling = 0;       ///< coefficient × radius, m: resisting torque a unit of normal force
     Vec<D, float> normal{};  ///< from a to b
+    Vec<D, float>
+        surface_velocity{};  ///< how fast b's surface runs along a's beside the motion of the bodies
+                             ///< (conveyor belts), m/s; friction works against slip, this included
     std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};
     Vec<D, float> friction_impulse{};  ///< on b in the last sub-step, N·s
     Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
