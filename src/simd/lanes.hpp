@@ -9,6 +9,8 @@
 #define HWY_COMPILE_ONLY_STATIC
 #include <hwy/highway.h>
 
+#include "simd/scalar.hpp"
+
 namespace carom::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -18,7 +20,7 @@ using Register = hn::Vec<Tag>;
 
 /// Four floats each for the lanes 0, 4, 8, ... of `index`.
 template <int n>
-auto load_quads(const float* base, const std::uint32_t* index, std::size_t stride) {
+CAROM_INLINE auto load_quads(const float* base, const std::uint32_t* index, std::size_t stride) {
     const hn::FixedTag<float, n> tag;
     if constexpr (n == 4) {
         return hn::LoadU(tag, base + index[0] * stride);
@@ -29,7 +31,7 @@ auto load_quads(const float* base, const std::uint32_t* index, std::size_t strid
 }
 
 template <int n, class V>
-void store_quads(float* base, const std::uint32_t* index, std::size_t stride, V v) {
+CAROM_INLINE void store_quads(float* base, const std::uint32_t* index, std::size_t stride, V v) {
     if constexpr (n == 4) {
         hn::StoreU(v, hn::FixedTag<float, 4>(), base + index[0] * stride);
     } else {
@@ -40,7 +42,7 @@ void store_quads(float* base, const std::uint32_t* index, std::size_t stride, V 
 }
 
 /// Transposes each group of four lanes: from a register a lane to a register a component, and back.
-inline void transpose(Register& a, Register& b, Register& c, Register& d) {
+CAROM_INLINE void transpose(Register& a, Register& b, Register& c, Register& d) {
     const Tag tag;
     const hn::Repartition<std::uint64_t, Tag> pairs;
     const auto low_ab = hn::BitCast(pairs, hn::InterleaveLower(tag, a, b));
@@ -66,6 +68,7 @@ class Lanes {
 
     Lanes() : v_(hn::Zero(Tag())) {}
     explicit Lanes(float all) : v_(hn::Set(Tag(), all)) {}
+    static Lanes load(const float* lanes) { return hn::LoadU(Tag(), lanes); }
 
     friend Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v_, b.v_); }
     friend Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v_, b.v_); }
@@ -75,6 +78,8 @@ class Lanes {
     friend Mask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v_, b.v_)}; }
 
     friend Lanes select(Mask mask, Lanes yes, Lanes no) { return hn::IfThenElse(mask.m, yes.v_, no.v_); }
+    friend Lanes fabs(Lanes a) { return hn::Abs(a.v_); }
+    friend Lanes sqrt(Lanes a) { return hn::Sqrt(a.v_); }
     friend Lanes square_root(Lanes a) { return hn::Sqrt(a.v_); }
     friend bool any(Mask mask) { return !hn::AllFalse(Tag(), mask.m); }
     // The second operand where they are equal or one is not a number, like `a > b ? a : b`.
@@ -86,8 +91,8 @@ class Lanes {
     friend Lanes minimum(Lanes a, Lanes b) { return select(b > a, a, b); }
 #endif
 
-    friend void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride, Lanes& a,
-                             Lanes& b, Lanes& c, Lanes& d) {
+    CAROM_INLINE friend void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride,
+                                          Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
         a.v_ = load_quads<count>(base, index, stride);
         b.v_ = load_quads<count>(base, index + 1, stride);
         c.v_ = load_quads<count>(base, index + 2, stride);
@@ -95,8 +100,8 @@ class Lanes {
         transpose(a.v_, b.v_, c.v_, d.v_);
     }
 
-    friend void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride, Lanes a, Lanes b,
-                              Lanes c, Lanes d) {
+    CAROM_INLINE friend void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride,
+                                           Lanes a, Lanes b, Lanes c, Lanes d) {
         transpose(a.v_, b.v_, c.v_, d.v_);
         store_quads<count>(base, index, stride, a.v_);
         store_quads<count>(base, index + 1, stride, b.v_);
@@ -104,8 +109,8 @@ class Lanes {
         store_quads<count>(base, index + 3, stride, d.v_);
     }
 
-    friend void scatter_quads_from(std::uint32_t first, float* base, const std::uint32_t* index,
-                                   std::size_t stride, Lanes a, Lanes b, Lanes c, Lanes d) {
+    CAROM_INLINE friend void scatter_quads_from(std::uint32_t first, float* base, const std::uint32_t* index,
+                                                std::size_t stride, Lanes a, Lanes b, Lanes c, Lanes d) {
         alignas(64) float all[4][count];
         const Tag tag;
         hn::Store(a.v_, tag, all[0]);

@@ -5,6 +5,11 @@
 #include <cstdint>
 #include <cstring>
 
+/// For the arithmetic of the inner loops: what a loop holds in registers should stay there, and compilers do
+/// not put functions of this size into it by themselves.
+#define CAROM_INLINE [[gnu::always_inline]] inline
+#define CAROM_INLINE_LAMBDA __attribute__((always_inline))  // stands between the parameters and the body
+
 /// The lane functions for one lane: `float` itself. Constraint rows are written with these names only, so
 /// that the same rows run on wide lanes (simd/lanes.hpp), whose masks are not `bool`.
 namespace carom::detail {
@@ -13,6 +18,15 @@ template <class F>
 constexpr int lane_count = F::count;
 template <>
 inline constexpr int lane_count<float> = 1;
+
+template <class F>
+CAROM_INLINE F load_lanes(const float* lanes) {
+    return F::load(lanes);
+}
+template <>
+CAROM_INLINE float load_lanes<float>(const float* lanes) {
+    return *lanes;
+}
 
 inline float maximum(float a, float b) { return a > b ? a : b; }
 inline float minimum(float a, float b) { return a < b ? a : b; }

@@ -33,7 +33,7 @@ struct Body {
 
 /// Reads the bodies with these slots, one a lane.
 template <class F>
-Body<2, F> gather(const RecordView<2>& bodies, const std::uint32_t* slots) {
+CAROM_INLINE Body<2, F> gather(const RecordView<2>& bodies, const std::uint32_t* slots) {
     Body<2, F> body;
     Motion<2, F>& m = body.motion;
     F& mass = body.inverse_mass;
@@ -50,7 +50,7 @@ Body<2, F> gather(const RecordView<2>& bodies, const std::uint32_t* slots) {
 }
 
 template <class F>
-Body<3, F> gather(const RecordView<3>& bodies, const std::uint32_t* slots) {
+CAROM_INLINE Body<3, F> gather(const RecordView<3>& bodies, const std::uint32_t* slots) {
     Body<3, F> body;
     Motion<3, F>& m = body.motion;
     Symmetric3<F>& i = body.weight.inertia;
@@ -73,8 +73,8 @@ Body<3, F> gather(const RecordView<3>& bodies, const std::uint32_t* slots) {
 /// Writes the velocities back. No two lanes may have the same slot; with `some_fixed`, those that cannot be
 /// pushed may.
 template <class F>
-void scatter_velocity(const RecordView<2>& bodies, const std::uint32_t* slots, const Body<2, F>& body,
-                      bool some_fixed) {
+CAROM_INLINE void scatter_velocity(const RecordView<2>& bodies, const std::uint32_t* slots,
+                                   const Body<2, F>& body, bool some_fixed) {
     const Motion<2, F>& m = body.motion;
     if (some_fixed) {
         scatter_quads_from(bodies.first_movable, bodies.records, slots, body_stride<2>, m.v.x, m.v.y, m.w,
@@ -85,8 +85,8 @@ void scatter_velocity(const RecordView<2>& bodies, const std::uint32_t* slots, c
 }
 
 template <class F>
-void scatter_velocity(const RecordView<3>& bodies, const std::uint32_t* slots, const Body<3, F>& body,
-                      bool some_fixed) {
+CAROM_INLINE void scatter_velocity(const RecordView<3>& bodies, const std::uint32_t* slots,
+                                   const Body<3, F>& body, bool some_fixed) {
     const Motion<3, F>& m = body.motion;
     const F& ixx = body.weight.inertia.xx;
     float *linear = bodies.records, *angular = bodies.records + 4;
@@ -102,13 +102,15 @@ void scatter_velocity(const RecordView<3>& bodies, const std::uint32_t* slots, c
 
 /// Writes how far the bodies have come; all slots have to differ.
 template <class F>
-void scatter_way(const RecordView<2>& bodies, const std::uint32_t* slots, const Body<2, F>& body) {
+CAROM_INLINE void scatter_way(const RecordView<2>& bodies, const std::uint32_t* slots,
+                              const Body<2, F>& body) {
     const Motion<2, F>& m = body.motion;
     scatter_quads(bodies.records + 4, slots, body_stride<2>, m.moved.x, m.moved.y, m.turned,
                   body.weight.inertia);
 }
 template <class F>
-void scatter_way(const RecordView<3>& bodies, const std::uint32_t* slots, const Body<3, F>& body) {
+CAROM_INLINE void scatter_way(const RecordView<3>& bodies, const std::uint32_t* slots,
+                              const Body<3, F>& body) {
     const Motion<3, F>& m = body.motion;
     const Symmetric3<F>& i = body.weight.inertia;
     scatter_quads(bodies.records + 8, slots, body_stride<3>, m.moved.x, m.moved.y, m.moved.z, i.yy);
@@ -117,7 +119,7 @@ void scatter_way(const RecordView<3>& bodies, const std::uint32_t* slots, const 
 
 /// Writes everything but the locks.
 template <int D>
-void write_record(const RecordView<D>& bodies, std::uint32_t slot, const Body<D, float>& body) {
+CAROM_INLINE void write_record(const RecordView<D>& bodies, std::uint32_t slot, const Body<D, float>& body) {
     scatter_velocity(bodies, &slot, body, false);
     scatter_way(bodies, &slot, body);
     if constexpr (D == 3) {

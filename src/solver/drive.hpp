@@ -24,7 +24,7 @@ struct Drive {
 /// Adds a change that is small beside the velocity. What rounding cuts off is kept for the next time, so that
 /// a steady force is not lost bit by bit (Kahan 1965).
 template <class V>
-V add_precisely(const V& start, const V& change, V& lost) {
+CAROM_INLINE V add_precisely(const V& start, const V& change, V& lost) {
     const V whole = change + lost;
     const V sum = start + whole;
     lost = whole - (sum - start);
@@ -33,7 +33,8 @@ V add_precisely(const V& start, const V& change, V& lost) {
 
 /// The velocity after damping, outer forces and the given change by constraints.
 template <int D, class F>
-void push_velocity(Motion<D, F>& m, Drive<D, F>& d, const Vec<D, F>& by, const Angular<D, F>& spin_by, F h) {
+CAROM_INLINE void push_velocity(Motion<D, F>& m, Drive<D, F>& d, const Vec<D, F>& by,
+                                const Angular<D, F>& spin_by, F h) {
     m.v = add_precisely(Vec<D, F>(d.start - d.start * d.damping), Vec<D, F>(h * d.acceleration + by), d.lost);
     m.w = add_precisely(Angular<D, F>(d.start_spin - d.start_spin * d.spin_damping),
                         Angular<D, F>(h * d.spin_acceleration + spin_by), d.lost_spin);
@@ -44,7 +45,7 @@ void push_velocity(Motion<D, F>& m, Drive<D, F>& d, const Vec<D, F>& by, const A
 /// constraints did in a sub-step is the difference of velocities, and warm starting the next needs no pass
 /// over the constraints.
 template <int D, class F>
-void begin_warm(const Motion<D, F>& impulses, Drive<D, F>& d, F h) {
+CAROM_INLINE void begin_warm(const Motion<D, F>& impulses, Drive<D, F>& d, F h) {
     d.warm = impulses.v;
     d.warm_spin = impulses.w;
     d.change = d.warm + h * d.acceleration;
@@ -52,7 +53,7 @@ void begin_warm(const Motion<D, F>& impulses, Drive<D, F>& d, F h) {
 }
 
 template <int D, class F>
-void integrate_velocity(Motion<D, F>& m, Drive<D, F>& d, F h) {
+CAROM_INLINE void integrate_velocity(Motion<D, F>& m, Drive<D, F>& d, F h) {
     d.start = m.v;
     d.start_spin = m.w;
     d.lost_before = d.lost;
@@ -61,7 +62,7 @@ void integrate_velocity(Motion<D, F>& m, Drive<D, F>& d, F h) {
 }
 
 template <int D, class F>
-void integrate_position(Motion<D, F>& m, F h) {
+CAROM_INLINE void integrate_position(Motion<D, F>& m, F h) {
     m.moved += h * m.v;
     m.turned = m.turned + h * m.w;
 }
@@ -70,7 +71,7 @@ void integrate_position(Motion<D, F>& m, F h) {
 /// It is all of Δ in free fall, sliding and rolling, and nothing in a blow or at rest. From Δ · Δ and Δ ·
 /// Δ(before).
 template <class F>
-F steady_share(F squared, F with_before) {
+CAROM_INLINE F steady_share(F squared, F with_before) {
     const auto some = squared > F(0);
     const F share = select(some, with_before / select(some, squared, F(1)), F(0));
     return maximum(minimum(share, F(1)), F(0));
@@ -80,7 +81,7 @@ F steady_share(F squared, F with_before) {
 /// trapezoidal rule: exact under constant acceleration, so flight, sliding and rolling near contacts are
 /// second order, while a blow or a push against overlap still acts through the whole sub-step.
 template <int D, class F>
-void finish(Motion<D, F>& m, Drive<D, F>& d, F h) {
+CAROM_INLINE void finish(Motion<D, F>& m, Drive<D, F>& d, F h) {
     const Vec<D, F> change = (m.v - d.start) + (d.lost - d.lost_before);
     const Angular<D, F> spin_change = (m.w - d.start_spin) + (d.lost_spin - d.lost_spin_before);
     d.warm = change - (h * d.acceleration - d.damping * d.start);

@@ -131,78 +131,57 @@ void Solver<D>::fill_section(const SolverInput<D>& input, Section& section) {
     for (std::size_t block = 0; block < section.blocks.blocks(); ++block) fill_block(input, section, block);
 }
 
-namespace {
-
-template <int D>
-std::uint8_t traits_of(const ContactRecord<D>& record) {
-    return static_cast<std::uint8_t>((record.roundness_a != 0 || record.roundness_b != 0 ? some_round : 0) |
-                                     (record.rolling > 0 ? some_rolling : 0));
-}
-
-template <int D>
-ContactRows<D, float> rows_of(const ContactRecord<D>& record) {
-    ContactRows<D, float> rows;
-    rows.normal = record.normal;
-    const auto t = tangents<D>(record.normal);
-    rows.tangent = t[0];
-    rows.friction = record.friction;
-    rows.rolling = record.rolling;
-    rows.roundness_a = record.roundness_a;
-    rows.roundness_b = record.roundness_b;
-    for (int i = 0; i < record.count; ++i) {
-        const ContactRecordPoint<D>& from = record.points[i];
-        NormalRow<D, float>& p = rows.points[i];
-        p.arm_a = from.arm_a;
-        p.arm_b = from.arm_b;
-        p.separation = from.separation;
-        p.impulse = from.impulse;
-        p.mass = 1;  // used (see `weigh_rows`)
-    }
-    for (int i = 0; i < D - 1; ++i) {
-        rows.friction_impulse[i] = dot(record.friction_impulse, t[i]);
-        rows.surface_speed[i] = dot(record.surface_velocity, t[i]);
-    }
-    rows.rolling_impulse = record.spin_impulse;
-    rows.twist_impulse = record.twist_impulse;
-    return rows;
-}
-
-}  // namespace
-
 template <int D>
 void Solver<D>::fill_block(const SolverInput<D>& input, Section& section, std::size_t block) {
+    constexpr std::size_t ahead = 32;  // how many contacts before its turn a record is called for
     ContactBlocks<D>& blocks = section.blocks;
-    const std::size_t begin = block * blocks.width(), end = begin + blocks.width();
-    const auto record_of = [&](std::size_t place) -> const ContactRecord<D>* {
-        const std::uint32_t contact = section.contacts[place];
-        return contact == none ? nullptr : &input.contacts[input.active[contact]];
-    };
+    const std::size_t begin = block * blocks.width();
+    std::array<std::uint32_t, Passes<D>::most_lanes> index;
+    std::array<float, Passes<D>::most_lanes> count;
     std::uint8_t traits = 0;
-    for (std::size_t place = begin; place < end; ++place) {
-        if (const ContactRecord<D>* record = record_of(place)) traits |= traits_of(*record);
-        if (blocks.a(place) < view_.first_movable || blocks.b(place) < view_.first_movable)
-            traits |= some_fixed;
+    for (std::size_t lane = 0; lane < blocks.width(); ++lane) {
+        const std::size_t place = begin + lane;
+        prefetch_record(input, section, place + ahead);
+        const std::uint32_t contact = section.contacts[place];
+        index[lane] = contact == none ? index[0] : input.active[contact];
+        const ContactRecord<D>& record = input.contacts[index[lane]];
+        count[lane] = contact == none ? 0 : static_cast<float>(record.count);
+        const bool fixed = blocks.a(place) < view_.first_movable || blocks.b(place) < view_.first_movable;
+        traits |= (fixed ? some_fixed : 0) | (record.rolling > 0 ? some_rolling : 0) |
+                  (record.roundness_a != 0 || record.roundness_b != 0 ? some_round : 0);
+        if (record.restitution != 0 && contact != none) note_impacts(section, place, record);
     }
     blocks.traits(block) = traits;
-    const Rows model;
-    const std::size_t fields =
-        traits & some_rolling ? LaneStore<Rows>::fields : field_of(model, model.rolling);
-    for (std::size_t place = begin; place < end; ++place) {
-        const ContactRecord<D>* record = record_of(place);
-        if (!record) {
-            blocks.rows().set(place, {}, fields);
-            continue;
-        }
-        blocks.rows().set(place, rows_of(*record), fields);
-        const auto pushed = [](const ContactRecordPoint<D>& p) { return p.impulse > 0; };
-        if (std::none_of(record->points.begin(), record->points.begin() + record->count, pushed))
-            section.unsettled.push_back(static_cast<std::uint32_t>(place));
-        if (record->restitution == 0) continue;
-        for (int k = 0; k < record->count; ++k)
-            impacts_.push_back({static_cast<std::uint32_t>(&section - sections_.data()),
-                                static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(k),
-                                record->restitution, 0, 0});
+    blocks.passes().load(blocks.span(block, 1), {input.contacts.data(), index.data(), count.data()}, view_);
+    for (std::size_t lane = 0; lane < blocks.width(); ++lane) {
+        if (count[lane] > 0 && !carries_impulse(blocks.rows(), begin + lane))
+            section.unsettled.push_back(static_cast<std::uint32_t>(begin + lane));
     }
+}
+
+template <int D>
+void Solver<D>::prefetch_record(const SolverInput<D>& input, const Section& section, std::size_t place) {
+    if (place >= section.contacts.size() || section.contacts[place] == none) return;
+    const char* record =
+        reinterpret_cast<const char*>(&input.contacts[input.active[section.contacts[place]]]);
+    for (std::size_t line = 0; line < sizeof(ContactRecord<D>); line += 64) __builtin_prefetch(record + line);
+}
+
+/// Does any point of the contact push?
+template <int D>
+bool Solver<D>::carries_impulse(const LaneStore<Rows>& rows, std::size_t place) {
+    const Rows model;
+    return std::any_of(model.points.begin(), model.points.end(), [&](const NormalRow<D, float>& p) {
+        return rows.at(place, field_of(model, p.impulse)) > 0;
+    });
+}
+
+template <int D>
+void Solver<D>::note_impacts(const Section& section, std::size_t place, const ContactRecord<D>& record) {
+    const auto number = static_cast<std::uint32_t>(&section - sections_.data());
+    for (int k = 0; k < record.count; ++k)
+        impacts_.push_back({number, static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(k),
+                            record.restitution, 0, 0});
 }
 
 template <int D>
@@ -242,9 +221,11 @@ void Solver<D>::store_contact(const Section& section, std::size_t place, Contact
 
 template <int D>
 void Solver<D>::store(const SolverInput<D>& input) {
+    constexpr std::size_t ahead = 32;
     for (const Section& section : sections_) {
         for (std::size_t place = 0; place < section.contacts.size(); ++place) {
             const std::uint32_t contact = section.contacts[place];
+            prefetch_record(input, section, place + ahead);
             if (contact != none) store_contact(section, place, input.contacts[input.active[contact]]);
         }
     }
@@ -259,9 +240,10 @@ void Solver<D>::store(const SolverInput<D>& input) {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                       \
-    template void Solver<D>::gather_bodies(const SolverInput<D>&); \
-    template void Solver<D>::deal_contacts(const SolverInput<D>&); \
+#define CAROM_INSTANTIATE(D)                                                       \
+    template void Solver<D>::gather_bodies(const SolverInput<D>&);                 \
+    template bool Solver<D>::carries_impulse(const LaneStore<Rows>&, std::size_t); \
+    template void Solver<D>::deal_contacts(const SolverInput<D>&);                 \
     template void Solver<D>::store(const SolverInput<D>&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dynamics/contact.hpp"
 #include "solver/body_records.hpp"
 #include "solver/drive.hpp"
 #include "solver/prepare.hpp"
@@ -23,6 +24,14 @@ struct BlockSpan {
     std::size_t blocks = 0;
 };
 
+/// Which contact each lane of a block takes.
+template <int D>
+struct BlockSource {
+    const ContactRecord<D>* records = nullptr;
+    const std::uint32_t* index = nullptr;  ///< by lane; a lane without a contact may name any
+    const float* count = nullptr;          ///< by lane: how many points; 0 in a lane without a contact
+};
+
 /// All bodies with what drives them.
 template <int D>
 struct BodySpan {
@@ -34,10 +43,12 @@ struct BodySpan {
 /// The inner loops of the solver for one lane width.
 template <int D>
 struct Passes {
+    static constexpr std::size_t most_lanes = 16;
     int width;
 
     // Over contacts.
-    void (*weigh)(const BlockSpan<D>&, const RecordView<D>&);
+    /// Fills one block from contact records, and applies the impulses that they have kept.
+    void (*load)(const BlockSpan<D>&, const BlockSource<D>&, const RecordView<D>&);
     void (*warm_start)(const BlockSpan<D>&, const RecordView<D>&);
     /// The records have to hold the change of velocity in place of the velocity and the acceleration by outer
     /// forces in place of the way.

@@ -7,18 +7,18 @@
 namespace carom::detail {
 
 template <class F>
-F inverse_or_zero(F k) {
+CAROM_INLINE F inverse_or_zero(F k) {
     const auto some = k > F(0);
     return select(some, F(1) / select(some, k, F(1)), F(0));
 }
 template <class F>
-Symmetric3<F> inverse_or_zero(const Symmetric3<F>& k) {
+CAROM_INLINE Symmetric3<F> inverse_or_zero(const Symmetric3<F>& k) {
     return adjugate(k) * inverse_or_zero(determinant(k));
 }
 
 /// The patch of friction lies in the middle of the points that are used.
 template <int D, class F>
-void place_patch(ContactRows<D, F>& c) {
+CAROM_INLINE void place_patch(ContactRows<D, F>& c) {
     F count = F(0);
     Vec<D, F> sum_a{}, sum_b{};
     for (const NormalRow<D, F>& p : c.points) {
@@ -34,11 +34,11 @@ void place_patch(ContactRows<D, F>& c) {
 
 /// Inverse of the effective masses of the patch, which is symmetric, between its two tangents.
 template <class F>
-void weigh_patch(ContactRows<2, F>& c, const Weight<2, F>& a, const Weight<2, F>& b) {
+CAROM_INLINE void weigh_patch(ContactRows<2, F>& c, const Weight<2, F>& a, const Weight<2, F>& b) {
     c.patch_mass[0] = inverse_or_zero(compliance(c.tangent, c.arm_a, c.arm_b, a, b));
 }
 template <class F>
-void weigh_patch(ContactRows<3, F>& c, const Weight<3, F>& a, const Weight<3, F>& b) {
+CAROM_INLINE void weigh_patch(ContactRows<3, F>& c, const Weight<3, F>& a, const Weight<3, F>& b) {
     const auto [t1, t2] = tangents_of(c);
     const Vec<3, F> a1 = cross(c.arm_a, t1), a2 = cross(c.arm_a, t2);
     const Vec<3, F> b1 = cross(c.arm_b, t1), b2 = cross(c.arm_b, t2);
@@ -57,7 +57,8 @@ void weigh_patch(ContactRows<3, F>& c, const Weight<3, F>& a, const Weight<3, F>
 
 /// On entry the mass of a point is positive where the point is used and zero where not.
 template <int D, class F>
-void weigh_rows(ContactRows<D, F>& c, const Weight<D, F>& a, const Weight<D, F>& b, Extras extras) {
+CAROM_INLINE void weigh_rows(ContactRows<D, F>& c, const Weight<D, F>& a, const Weight<D, F>& b,
+                             Extras extras) {
     place_patch(c);
     weigh_patch(c, a, b);
     for (NormalRow<D, F>& p : c.points)
@@ -77,7 +78,8 @@ void weigh_rows(ContactRows<D, F>& c, const Weight<D, F>& a, const Weight<D, F>&
 /// steady change of the relative speed makes, and no more than what the outer forces alone would: none at
 /// rest. `change` is Δv of b against a in the sub-step before, `acceleration` what outer forces make of it.
 template <int D, class F>
-void look_ahead(ContactRows<D, F>& c, const Vec<D, F>& change, const Vec<D, F>& acceleration, F h) {
+CAROM_INLINE void look_ahead(ContactRows<D, F>& c, const Vec<D, F>& change, const Vec<D, F>& acceleration,
+                             F h) {
     const F outer = F(-0.5f) * h * h * dot(c.normal, acceleration);
     const F steady = F(-0.5f) * h * dot(c.normal, change);
     c.lead = select(is_in_flight(c), maximum(F(0), minimum(outer, steady)), F(0));
@@ -85,7 +87,7 @@ void look_ahead(ContactRows<D, F>& c, const Vec<D, F>& change, const Vec<D, F>& 
 
 /// Are all points that are used open?
 template <int D, class F>
-auto is_in_flight(const ContactRows<D, F>& c) {
+CAROM_INLINE auto is_in_flight(const ContactRows<D, F>& c) {
     constexpr float touching = 1e-5f;  // m: nearer things are not in flight
     F nearest = F(1);
     for (const NormalRow<D, F>& p : c.points)
@@ -95,7 +97,7 @@ auto is_in_flight(const ContactRows<D, F>& c) {
 
 /// Adds what the rows hold now to the sums over the sub-steps.
 template <int D, class F>
-void tally(ContactRows<D, F>& c) {
+CAROM_INLINE void tally(ContactRows<D, F>& c) {
     for (NormalRow<D, F>& p : c.points) p.total_impulse = p.total_impulse + p.impulse;
     for (int k = 0; k < D - 1; ++k) c.total_friction[k] = c.total_friction[k] + c.friction_impulse[k];
 }

@@ -82,16 +82,16 @@ struct Extras {
 };
 
 template <class F>
-std::array<Vec<2, F>, 1> tangents_of(const ContactRows<2, F>& c) {
+CAROM_INLINE std::array<Vec<2, F>, 1> tangents_of(const ContactRows<2, F>& c) {
     return {c.tangent};
 }
 template <class F>
-std::array<Vec<3, F>, 2> tangents_of(const ContactRows<3, F>& c) {
+CAROM_INLINE std::array<Vec<3, F>, 2> tangents_of(const ContactRows<3, F>& c) {
     return {c.tangent, cross(c.normal, c.tangent)};
 }
 
 template <int D, class F>
-Vec<D, F> each(const Vec<D, F>& a, const Vec<D, F>& b) {
+CAROM_INLINE Vec<D, F> each(const Vec<D, F>& a, const Vec<D, F>& b) {
     Vec<D, F> r;
     for (int i = 0; i < D; ++i) r[i] = a[i] * b[i];
     return r;
@@ -99,8 +99,8 @@ Vec<D, F> each(const Vec<D, F>& a, const Vec<D, F>& b) {
 
 /// Inverse of the effective mass that an impulse along `n` meets at the two arms.
 template <int D, class F>
-F compliance(const Vec<D, F>& n, const Vec<D, F>& arm_a, const Vec<D, F>& arm_b, const Weight<D, F>& a,
-             const Weight<D, F>& b) {
+CAROM_INLINE F compliance(const Vec<D, F>& n, const Vec<D, F>& arm_a, const Vec<D, F>& arm_b,
+                          const Weight<D, F>& a, const Weight<D, F>& b) {
     const Angular<D, F> ra = cross(arm_a, n), rb = cross(arm_b, n);
     return dot(n, each(a.mass + b.mass, n)) + angular_dot(ra, a.inertia * ra) +
            angular_dot(rb, b.inertia * rb);
@@ -108,15 +108,15 @@ F compliance(const Vec<D, F>& n, const Vec<D, F>& arm_a, const Vec<D, F>& arm_b,
 
 /// Velocity of b against a at the arms.
 template <int D, class F>
-Vec<D, F> relative_velocity(const Motion<D, F>& a, const Motion<D, F>& b, const Vec<D, F>& arm_a,
-                            const Vec<D, F>& arm_b) {
+CAROM_INLINE Vec<D, F> relative_velocity(const Motion<D, F>& a, const Motion<D, F>& b, const Vec<D, F>& arm_a,
+                                         const Vec<D, F>& arm_b) {
     return (b.v + cross(b.w, arm_b)) - (a.v + cross(a.w, arm_a));
 }
 
 /// Impulse `p` on b at its arm, and −p on a.
 template <int D, class F>
-void push(Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa, const Weight<D, F>& wb,
-          const Vec<D, F>& arm_a, const Vec<D, F>& arm_b, const Vec<D, F>& p) {
+CAROM_INLINE void push(Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa, const Weight<D, F>& wb,
+                       const Vec<D, F>& arm_a, const Vec<D, F>& arm_b, const Vec<D, F>& p) {
     a.v -= each(wa.mass, p);
     a.w = a.w - wa.inertia * cross(arm_a, p);
     b.v += each(wb.mass, p);
@@ -125,8 +125,8 @@ void push(Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa, const Weight
 
 /// Angular impulse `l` on b, and −l on a.
 template <int D, class F>
-void twist(Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa, const Weight<D, F>& wb,
-           const Angular<D, F>& l) {
+CAROM_INLINE void twist(Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa, const Weight<D, F>& wb,
+                        const Angular<D, F>& l) {
     a.w = a.w - wa.inertia * l;
     b.w = b.w + wb.inertia * l;
 }
@@ -149,7 +149,8 @@ struct Turn {
 /// How far the end of an arm has come along the normal n as the arm r turned by θ, to second order:
 /// n · (θ × r + ½ θ × (θ × r)) = θ · (r × n) + ½ ((θ · n)(θ · r) − θ² (n · r)). `lever` is r × n.
 template <int D, class F>
-F rise(const Turn<D, F>& turn, const Vec<D, F>& normal, const Vec<D, F>& arm, const Angular<D, F>& lever) {
+CAROM_INLINE F rise(const Turn<D, F>& turn, const Vec<D, F>& normal, const Vec<D, F>& arm,
+                    const Angular<D, F>& lever) {
     F second = turn.squared * dot(normal, arm);
     if constexpr (D == 3) second = second - turn.about * dot(turn.angle, arm);
     return angular_dot(turn.angle, lever) - F(0.5f) * second;
@@ -159,13 +160,14 @@ F rise(const Turn<D, F>& turn, const Vec<D, F>& normal, const Vec<D, F>& arm, co
 /// new points at the same height, so the term belongs to the arm that ends at the centre of the curvature, a
 /// radius ρ further in: n · θ × (θ × ρn) = −ρ |θ|² (θ across n).
 template <int D, class F>
-F roundness(const ContactRows<D, F>& c, const Turn<D, F>& a, const Turn<D, F>& b) {
+CAROM_INLINE F roundness(const ContactRows<D, F>& c, const Turn<D, F>& a, const Turn<D, F>& b) {
     return F(0.5f) * (c.roundness_a * a.tilt_squared() + c.roundness_b * b.tilt_squared());
 }
 
 /// Gap at a point now. The normal is that of the step's start.
 template <int D, class F>
-F gap(const ContactRows<D, F>& c, const NormalRow<D, F>& p, const Motion<D, F>& a, const Motion<D, F>& b) {
+CAROM_INLINE F gap(const ContactRows<D, F>& c, const NormalRow<D, F>& p, const Motion<D, F>& a,
+                   const Motion<D, F>& b) {
     const Turn<D, F> ta(c.normal, a.turned), tb(c.normal, b.turned);
     return p.separation + (dot(c.normal, b.moved - a.moved) - roundness(c, ta, tb)) +
            (rise(tb, c.normal, p.arm_b, cross(p.arm_b, c.normal)) -
@@ -183,8 +185,9 @@ struct SubStep {
 /// One pass over the normal rows. A gap is left to close by itself (the bias lets the bodies approach just so
 /// far), an overlap is pushed apart softly if `biased`.
 template <bool biased, int D, class F>
-void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
-                   const Weight<D, F>& wb, const SubStep<F>& sub, Extras extras = {true, true}) {
+CAROM_INLINE void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b,
+                                const Weight<D, F>& wa, const Weight<D, F>& wb, const SubStep<F>& sub,
+                                Extras extras = {true, true}) {
     const Vec<D, F> n = c.normal;
     const Turn<D, F> ta(n, a.turned), tb(n, b.turned);
     F parted = dot(n, b.moved - a.moved);
@@ -229,8 +232,8 @@ void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const
 /// the speed at which the surfaces move along with one another. In 3D the two
 /// tangential components are solved together and cut back to the circle, so friction is a cone.
 template <class F>
-void solve_patch(ContactRows<2, F>& c, Motion<2, F>& a, Motion<2, F>& b, const Weight<2, F>& wa,
-                 const Weight<2, F>& wb, F normal_impulse) {
+CAROM_INLINE void solve_patch(ContactRows<2, F>& c, Motion<2, F>& a, Motion<2, F>& b, const Weight<2, F>& wa,
+                              const Weight<2, F>& wb, F normal_impulse) {
     const F speed = dot(c.tangent, relative_velocity(a, b, c.arm_a, c.arm_b)) + c.surface_speed[0];
     const F limit = c.friction * normal_impulse;
     const F old = c.friction_impulse[0];
@@ -240,8 +243,8 @@ void solve_patch(ContactRows<2, F>& c, Motion<2, F>& a, Motion<2, F>& b, const W
 }
 
 template <class F>
-void solve_patch(ContactRows<3, F>& c, Motion<3, F>& a, Motion<3, F>& b, const Weight<3, F>& wa,
-                 const Weight<3, F>& wb, F normal_impulse) {
+CAROM_INLINE void solve_patch(ContactRows<3, F>& c, Motion<3, F>& a, Motion<3, F>& b, const Weight<3, F>& wa,
+                              const Weight<3, F>& wb, F normal_impulse) {
     const auto [t1, t2] = tangents_of(c);
     const Vec<3, F> v = relative_velocity(a, b, c.arm_a, c.arm_b);
     const F v1 = dot(t1, v) + c.surface_speed[0], v2 = dot(t2, v) + c.surface_speed[1];
@@ -269,8 +272,8 @@ void solve_patch(ContactRows<3, F>& c, Motion<3, F>& a, Motion<3, F>& b, const W
 
 /// Rolling resistance: the angular impulse that stops the relative spin, at most rolling · normal impulse.
 template <int D, class F>
-void solve_rolling(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
-                   const Weight<D, F>& wb, F normal_impulse) {
+CAROM_INLINE void solve_rolling(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b,
+                                const Weight<D, F>& wa, const Weight<D, F>& wb, F normal_impulse) {
     const Angular<D, F> old = c.rolling_impulse;
     Angular<D, F> next = old - c.rolling_mass * (b.w - a.w);
     const F limit = c.rolling * normal_impulse;
@@ -283,8 +286,9 @@ void solve_rolling(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const
 
 /// Friction and rolling resistance, after the normal rows.
 template <int D, class F>
-void solve_friction(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
-                    const Weight<D, F>& wb, Extras extras = {true, true}) {
+CAROM_INLINE void solve_friction(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b,
+                                 const Weight<D, F>& wa, const Weight<D, F>& wb,
+                                 Extras extras = {true, true}) {
     F normal_impulse = F(0);
     for (const NormalRow<D, F>& p : c.points) normal_impulse = normal_impulse + p.impulse;
     if (extras.rolling) solve_rolling(c, a, b, wa, wb, normal_impulse);
@@ -293,7 +297,7 @@ void solve_friction(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, cons
 
 /// The vector with these components along the tangents.
 template <int D, class F>
-Vec<D, F> along_tangents(const ContactRows<D, F>& c, const std::array<F, D - 1>& components) {
+CAROM_INLINE Vec<D, F> along_tangents(const ContactRows<D, F>& c, const std::array<F, D - 1>& components) {
     const auto t = tangents_of(c);
     Vec<D, F> sum = components[0] * t[0];
     if constexpr (D == 3) sum += components[1] * t[1];
@@ -302,8 +306,8 @@ Vec<D, F> along_tangents(const ContactRows<D, F>& c, const std::array<F, D - 1>&
 
 /// Applies the impulses that the rows hold.
 template <int D, class F>
-void warm_start(const ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
-                const Weight<D, F>& wb, Extras extras = {true, true}) {
+CAROM_INLINE void warm_start(const ContactRows<D, F>& c, Motion<D, F>& a, Motion<D, F>& b,
+                             const Weight<D, F>& wa, const Weight<D, F>& wb, Extras extras = {true, true}) {
     for (const NormalRow<D, F>& p : c.points) push(a, b, wa, wb, p.arm_a, p.arm_b, p.impulse * c.normal);
     push(a, b, wa, wb, c.arm_a, c.arm_b, along_tangents(c, c.friction_impulse));
     if (extras.rolling) twist(a, b, wa, wb, c.rolling_impulse);

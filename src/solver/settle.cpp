@@ -14,15 +14,9 @@ bool Solver<D>::find_struck() {
     for (Section& s : sections_) {
         s.struck.clear();
         const LaneStore<Rows>& rows = s.blocks.rows();
-        const Rows model;
-        const auto carries = [&](std::uint32_t place) {
-            return std::any_of(model.points.begin(), model.points.end(), [&](const NormalRow<D, float>& p) {
-                return rows.at(place, field_of(model, p.impulse)) > 0;
-            });
-        };
         std::size_t left = 0;
         for (const std::uint32_t place : s.unsettled) {
-            if (carries(place)) {
+            if (carries_impulse(rows, place)) {
                 s.struck.push_back(place);
             } else {
                 s.unsettled[left++] = place;
@@ -111,21 +105,29 @@ void Solver<D>::mark_struck_bodies() {
 template <int D>
 void Solver<D>::sum_struck() {
     mark_struck_bodies();
-    sums_ = records_;
     RecordView<D> sums = view_;
-    sums.records = sums_.data();
-    for (std::uint32_t slot = 1; slot < bodies_.size(); ++slot) {
+    const auto clear = [&](std::uint32_t slot) {
         Body<D, float> body = gather<float>(sums, &slot);
         body.motion = {};
         scatter_velocity(sums, &slot, body, false);
+    };
+    if (!sums_begun_) {
+        sums_ = records_;
+        sums.records = sums_.data();
+        for (std::uint32_t slot = 1; slot < bodies_.size(); ++slot) clear(slot);
+        sums_begun_ = true;
     }
+    sums.records = sums_.data();
+    wanted_.clear();
     for (Section& s : sections_) {
         for (std::size_t block = 0; block < s.blocks.blocks(); ++block) {
             const BlockSpan<D> one = s.blocks.span(block, 1);
             bool wanted = false;
             for (std::size_t lane = 0; lane < s.blocks.width(); ++lane)
                 wanted |= is_struck_[one.a[lane]] || is_struck_[one.b[lane]];
-            if (wanted) s.blocks.passes().warm_start(one, sums);
+            if (!wanted) continue;
+            s.blocks.passes().warm_start(one, sums);
+            wanted_.push_back({one, s.blocks.width()});
         }
     }
     for (const std::uint32_t slot : struck_slots_) {
@@ -137,6 +139,12 @@ void Solver<D>::sum_struck() {
         push_velocity(body.motion, drive, sum.v, sum.w, h_);
         drives_.set(slot, drive);
         scatter_velocity(view_, &slot, body, false);
+    }
+    for (const auto& [block, width] : wanted_) {
+        for (std::size_t lane = 0; lane < width; ++lane) {
+            clear(block.a[lane]);
+            clear(block.b[lane]);
+        }
     }
 }
 

@@ -47,10 +47,9 @@ void Solver<D>::run(const SolverInput<D>& input) {
     set_lengths(input);
     passes_ = &passes_of_width<D>(lane_width());
     gather_bodies(input);
-    deal_contacts(input);
+    deal_contacts(input);  // and apply the impulses that they have kept
 
-    each_section([&](auto span, auto& passes) { passes.weigh(span, view_); });
-    each_section([&](auto span, auto& passes) { passes.warm_start(span, view_); });
+    sums_begun_ = false;
     passes_->begin_warm(body_span(), h_);
     each_section([&](auto span, auto& passes) { passes.look_ahead(span, view_, h_); });
     passes_->begin(body_span(), h_);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "carom/body.hpp"
@@ -75,6 +76,9 @@ class Solver {
     void deal_contacts(const SolverInput<D>& input);
     void fill_section(const SolverInput<D>& input, Section& section);
     void fill_block(const SolverInput<D>& input, Section& section, std::size_t block);
+    static void prefetch_record(const SolverInput<D>& input, const Section& section, std::size_t place);
+    void note_impacts(const Section& section, std::size_t place, const ContactRecord<D>& record);
+    static bool carries_impulse(const LaneStore<Rows>& rows, std::size_t place);
     void store(const SolverInput<D>& input);
     void store_contact(const Section& section, std::size_t place, ContactRecord<D>& record) const;
 
@@ -107,10 +111,13 @@ class Solver {
     std::vector<SlotPair> pairs_;  ///< by active contact
     Colours colours_;
     std::array<Section, 2> sections_;
-    std::vector<float> sums_;                  ///< like `records_`, with what the impulses make as velocities
+    std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
+    bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`
     std::vector<std::uint8_t> is_struck_;      ///< by slot: has it a contact that is struck?
     std::vector<std::uint32_t> struck_slots_;  ///< those that have
-    std::vector<Impact> impacts_;              ///< points with restitution
+    std::vector<std::pair<BlockSpan<D>, std::size_t>>
+        wanted_;                   ///< blocks with such contacts, and their widths
+    std::vector<Impact> impacts_;  ///< points with restitution
 };
 
 }  // namespace carom::detail
