@@ -41,7 +41,7 @@ void Solver<D>::gather_bodies(const SolverInput<D>& input) {
 
     const auto is_locked = [&](std::uint32_t body) {
         const Locks& locks = input.masses[body].locks;
-        return input.masses[body].locked && (locks.x || locks.y || locks.z);
+        return locks.x || locks.y || locks.z;
     };
     const bool some_locked = std::any_of(bodies_.begin() + 1, bodies_.end(), is_locked);
     free_axes_.assign(some_locked ? slots * 4 : 0, 1);
