@@ -57,12 +57,14 @@ template <int D>
 void Tree<D>::move(std::int32_t leaf, const Aabb<D>& box) {
     assert(nodes_[leaf].height == 0 && nodes_[leaf].leaf());
     const std::int32_t parent = nodes_[leaf].parent;
-    // While the parent holds the new box, no better place is to be expected.
-    const bool stays = parent == none || contains(nodes_[parent].box, box);
+    // While the parent holds the new box, no better place is to be expected; one that the old box still
+    // touches is worth keeping, if its ancestors may swap their children.
+    const bool held = parent == none || contains(nodes_[parent].box, box);
+    const bool stays = held || overlaps(nodes_[leaf].box, box);
     if (!stays) detach(leaf);
     nodes_[leaf].box = box;
     if (stays)
-        refit_upwards(parent, false);
+        refit_upwards(parent, !held);
     else
         attach(leaf);
 }

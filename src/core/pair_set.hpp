@@ -7,12 +7,15 @@
 
 namespace carom::detail {
 
+/// Stands for no part in particular.
+constexpr std::uint32_t whole = ~std::uint32_t{0};
+
 /// An unordered pair of numbers, and a third one that tells several such pairs apart.
 struct PairKey {
     std::uint32_t a = 0, b = 0;  ///< a < b
-    std::uint32_t part = 0;
+    std::uint32_t part = whole;
 
-    static PairKey of(std::uint32_t one, std::uint32_t other, std::uint32_t part = 0) {
+    static PairKey of(std::uint32_t one, std::uint32_t other, std::uint32_t part = whole) {
         return {std::min(one, other), std::max(one, other), part};
     }
     friend auto operator<=>(const PairKey&, const PairKey&) = default;

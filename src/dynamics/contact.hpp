@@ -23,7 +23,7 @@ struct ContactRecordPoint {
 template <int D>
 struct ContactRecord {
     std::uint32_t shape_a = 0, shape_b = 0;
-    std::uint32_t facet = 0;  ///< of the terrain, where one of the shapes is one
+    std::uint32_t facet = 0;  ///< of the terrain where one of the shapes is one, `whole` otherwise
     std::uint32_t body_a = 0, body_b = 0;
     int count = 0;
     float restitution = 0;
@@ -40,6 +40,8 @@ struct ContactRecord {
     Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
     std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};
     Vec<D, float> total_friction{};  ///< on b through the whole step, N·s
+    bool on_fixed = false;           ///< one of the bodies is fixed
+    bool special = false;            ///< one of the shapes is one-way or a conveyor belt
     bool touching = false;           ///< as last reported by an event
     bool passing = false;            ///< through a one-way shape
     bool merged = false;             ///< its points are kept by another contact of the same patch

@@ -55,8 +55,7 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition
                      Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) w.shapes.emplace_back();
-    const bool listed = w.shapes[i].moved;  // a place that was freed since the last step is still on the list
-    w.shapes[i] = {std::move(shape), definition, body, Tree<D>::none, false, listed};
+    w.shapes[i] = {std::move(shape), definition, body, Tree<D>::none, false};
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -135,6 +134,7 @@ ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definit
     require_place_for(shape, w.types[i]);
     const ShapeId<D> id = put_shape(w, i, definition, std::move(shape));
     w.update_mass(i);
+    w.forget_manifolds_of(i);
     w.insert_leaf(id.index);
     w.wake(i);
     return id;
@@ -154,6 +154,7 @@ void World<D>::remove_shape(ShapeId<D> shape) {
     drop_shape(w, shape);
     std::erase(w.infos[body].shapes, shape);
     w.update_mass(body);
+    w.forget_manifolds_of(body);
 }
 
 template <int D>
@@ -179,6 +180,7 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     w.shapes[i].shape = std::move(made);
     w.shapes[i].definition = definition;
     w.update_mass(body);
+    w.forget_manifolds_of(body);
     w.remove_leaf(i);
     w.insert_leaf(i);
     for (ContactRecord<D>& c : w.contacts) {
@@ -362,6 +364,7 @@ void World<D>::set_mass_properties(BodyId<D> body, const MassProperties<D>& prop
     d.center_of_mass = properties.center;
     d.inertia = properties.inertia;
     state_->update_mass(i);
+    state_->forget_manifolds_of(i);
     state_->wake(i);
 }
 

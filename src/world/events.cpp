@@ -31,7 +31,7 @@ void WorldState<D>::report_contacts() {
     place.resize(states.size());
     for (std::uint32_t k = 0; k < awake.size(); ++k) place[awake[k]] = k;
     for (ContactRecord<D>& c : contacts) {
-        if (!is_moving(c.body_a) && !is_moving(c.body_b)) continue;
+        if (!any_moves(c.body_a, c.body_b)) continue;
         bool held = false, near = false;
         for (int i = 0; i < c.count; ++i) {
             held |= c.points[i].total_impulse > 0 || c.points[i].separation <= 0;
@@ -40,7 +40,7 @@ void WorldState<D>::report_contacts() {
         if (c.merged) held = near = c.nearest <= parting_distance;
         const bool was_touching = c.touching;
         c.touching = held || (was_touching && near);
-        if (c.touching == was_touching || is_terrain_contact(c.shape_a, c.shape_b)) continue;
+        if (c.touching == was_touching || c.facet != whole) continue;
         if (c.touching)
             report_begin(c);
         else
@@ -56,8 +56,7 @@ void WorldState<D>::report_terrain() {
     terrain_touched.clear();
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         const ContactRecord<D>& c = contacts[i];
-        if (c.touching && is_terrain_contact(c.shape_a, c.shape_b))
-            terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
+        if (c.touching && c.facet != whole) terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
     }
     const auto by_shapes = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
         const auto key = [](const TerrainTouch<D>& t) {
@@ -140,7 +139,7 @@ void WorldState<D>::sense() {
     std::swap(events.sensor_ends, dropped_visits);
     for (SensorPair& pair : sensor_pairs) {
         const std::uint32_t a = shapes[pair.sensor].body, b = shapes[pair.visitor].body;
-        if (!is_moving(a) && !is_moving(b) && !pair.placed_anew) continue;
+        if (!any_moves(a, b) && !pair.placed_anew) continue;
         pair.placed_anew = false;
         const bool was_inside = pair.inside;
         pair.inside = !infos[a].disabled && !infos[b].disabled && overlap(pair.sensor, pair.visitor);

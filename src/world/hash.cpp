@@ -134,6 +134,11 @@ struct Folder {
             c.touching, c.passing, c.merged);
         for (int i = 0; i < c.count; ++i) all(c.points[i].impulse, c.points[i].feature, c.points[i].arm_a);
     }
+    template <int D>
+    void operator()(const ContactCache<D>& c) {
+        all(c.pose.position, c.pose.rotation, c.normal, c.way, c.count);
+        for (int i = 0; i < c.count; ++i) all(c.points[i].on_a, c.points[i].on_b, c.points[i].separation);
+    }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>
     void operator()(const WorldDefinition<D>& w) {
@@ -164,7 +169,7 @@ std::uint64_t World<D>::hash() const {
     w.forces.each([&](const ForceDefinition<D>& force, bool fired) {
         fold.all(force.kind, force.from, force.to, fired);
     });
-    fold.all(w.contacts, w.sensor_pairs);
+    fold.all(w.contacts, w.caches, w.sensor_pairs);
     return fold.hash.value();
 }
 

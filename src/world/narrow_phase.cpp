@@ -19,6 +19,13 @@ double turning_speed(const BodyState<D>& s, const BodyMass<D>& m) {
     return std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * m.radius;
 }
 
+/// The radius of the smaller body, of those that have one.
+template <int D>
+double smaller_radius(const BodyMass<D>& a, const BodyMass<D>& b) {
+    if (a.radius == 0 || b.radius == 0) return std::max(a.radius, b.radius);
+    return std::min(a.radius, b.radius);
+}
+
 /// Radius of the shape's curvature where it touches along `normal` (in its body's frame): a cylinder or cone
 /// is round on its side and flat on its base.
 template <int D>
@@ -58,32 +65,58 @@ std::optional<Separation<D>> gap_between(const Shape<D>& a, const Shape<D>& b, s
 
 }  // namespace
 
-/// Contact points of two bodies that are placed so; the gaps are those in these places.
+/// The manifold of two bodies that are placed so, marked on both.
 template <int D>
-void WorldState<D>::touch(ContactRecord<D>& c, const BodyState<D>& a, const BodyState<D>& b,
-                          double reach) const {
+void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, const BodyState<D>& b,
+                          double reach, ContactCache<D>& cache) const {
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
     const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
     const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
     Manifold<D> m = manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach);
-    const bool on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
-    if (on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
-    c.normal = narrow<float>(rotate(a.rotation, m.normal));
-    c.roundness_a = static_cast<float>(roundness<D>(shape_a, m.normal));
-    c.roundness_b =
-        static_cast<float>(roundness<D>(shape_b, unrotate(b.rotation, rotate(a.rotation, m.normal))));
-    const Vec<D> between = a.position - b.position;
-    c.count = 0;
+    if (c.on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
+    cache.pose = RelativePose<D>(a, b);
+    cache.normal = narrow<float>(m.normal);
+    cache.roundness_a = static_cast<float>(roundness<D>(shape_a, m.normal));
+    cache.roundness_b = static_cast<float>(roundness<D>(shape_b, unrotate(b_in_a.rotation, m.normal)));
+    cache.count = m.count;
     for (int i = 0; i < m.count; ++i) {
-        const Vec<D> arm = rotate(a.rotation, m.points[i].position - ma.center);
+        const Vec<D> on_a = m.points[i].position - ma.center;
+        const Vec<D> on_b = unrotate(cache.pose.rotation, on_a - cache.pose.position);
+        auto& mark = cache.points[i];
+        mark = {narrow<float>(on_a), narrow<float>(on_b), 0, m.points[i].feature};
+        // The gap that gives the separation back when it is added to what the rounded marks part.
+        const Vec<D> parted = cache.pose.position + rotate(cache.pose.rotation, narrow<double>(mark.on_b)) -
+                              narrow<double>(mark.on_a);
+        mark.separation =
+            static_cast<float>(m.points[i].separation - dot(narrow<double>(cache.normal), parted));
+    }
+}
+
+/// Writes the points of the cache, carried along with the bodies, into the contact. A point lies midway
+/// between its two marks, and its gap grows by what they part along the normal.
+template <int D>
+void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>& a, const BodyState<D>& b,
+                               double reach, ContactRecord<D>& c) const {
+    const Vec<D> normal = rotate(a.rotation, narrow<double>(cache.normal));
+    const Vec<D> between = b.position - a.position;
+    c.normal = narrow<float>(normal);
+    c.roundness_a = cache.roundness_a;
+    c.roundness_b = cache.roundness_b;
+    c.count = 0;
+    for (int i = 0; i < cache.count; ++i) {
+        const auto& mark = cache.points[i];
+        const Vec<D> on_a = rotate(a.rotation, narrow<double>(mark.on_a));
+        const Vec<D> on_b = between + rotate(b.rotation, narrow<double>(mark.on_b));
+        const double separation = mark.separation + dot(normal, on_b - on_a);
+        if (separation > reach) continue;
+        const Vec<D> middle = 0.5 * (on_a + on_b);
         ContactRecordPoint<D>& p = c.points[c.count];
-        p = {narrow<float>(arm),
-             narrow<float>(arm + between),
-             static_cast<float>(m.points[i].separation),
-             0,
-             0,
-             m.points[i].feature};
-        if (!on_fixed || !is_artefact_of_seam(c, a, b, p)) ++c.count;
+        p.arm_a = narrow<float>(middle);
+        p.arm_b = narrow<float>(middle - between);
+        p.separation = static_cast<float>(separation);
+        p.impulse = p.total_impulse = 0;
+        p.feature = mark.feature;
+        if (!c.on_fixed || !is_artefact_of_seam(c, a, b, p)) ++c.count;
     }
 }
 
@@ -110,7 +143,9 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
         if (!gap) return;
         const bool last = i + 1 == most_advances;
         if (gap->distance <= near || last) {
-            touch(c, a, b, speculative_distance);
+            ContactCache<D> then;
+            touch(c, a, b, speculative_distance, then);
+            set_points(then, a, b, speculative_distance, c);
             break;
         }
         const double closing = turning - dot(rotate(a.rotation, gap->axis), speed);
@@ -129,16 +164,25 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
 }
 
 template <int D>
-void WorldState<D>::update_contact(ContactRecord<D>& c, double dt) const {
+void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, double dt) const {
     const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
     const double way = dt * (length(sb.velocity - sa.velocity) + turning_speed(sa, ma) +
                              turning_speed(sb, mb) + length(definition.gravity) * dt);
+    const double reach = definition.continuous ? speculative_distance : speculative_distance + way;
     const ContactRecord<D> old = c;
-    touch(c, sa, sb, definition.continuous ? speculative_distance : speculative_distance + way);
+    if (!cache.holds(RelativePose<D>(sa, sb))) {
+        // Points that are out of reach by less than the bodies may move before this is done again count too.
+        cache.way = static_cast<float>(reuse_share * smaller_radius(ma, mb));
+        touch(c, sa, sb, reach + cache.way, cache);
+        if (!definition.continuous) cache.forget();  // it was made for this step's reach
+    }
+    set_points(cache, sa, sb, reach, c);
     if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) meet_ahead(c, dt);
-    pass_one_way(c, old.count > 0 || old.passing);
-    drag_along(c);
+    if (c.special) {
+        pass_one_way(c, old.count > 0 || old.passing);
+        drag_along(c);
+    }
     carry_impulses(old, c, near_share * std::min(ma.radius, mb.radius), ma.inverse_mass == 0);
     c.total_friction = {};
     c.merged = false;
@@ -147,12 +191,9 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, double dt) const {
 template <int D>
 void WorldState<D>::collide(double dt) {
     list_fixed_contacts();
-    for (ContactRecord<D>& c : contacts) {
-        if (infos[c.body_a].disabled || infos[c.body_b].disabled) {
-            c.count = 0;
-        } else if (is_moving(c.body_a) || is_moving(c.body_b)) {
-            update_contact(c, dt);
-        }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        ContactRecord<D>& c = contacts[i];
+        if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[i], dt);
     }
     merge_patches();
 }

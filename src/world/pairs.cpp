@@ -46,8 +46,9 @@ const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>& shape) const {
 
 template <int D>
 void WorldState<D>::mark_moved(std::uint32_t shape) {
-    if (shapes[shape].moved) return;
-    shapes[shape].moved = true;
+    has_new_box.resize(shapes.size(), 0);
+    if (has_new_box[shape]) return;
+    has_new_box[shape] = 1;
     moved_shapes.push_back(shape);
 }
 
@@ -131,7 +132,7 @@ void WorldState<D>::find_pairs() {
         moving_tree.query(box, meet);
         if (!s.in_fixed_tree) fixed_tree.query(box, meet);
     }
-    for (const std::uint32_t shape : moved_shapes) shapes[shape].moved = false;
+    for (const std::uint32_t shape : moved_shapes) has_new_box[shape] = 0;
     moved_shapes.clear();
 
     std::sort(new_pairs.begin(), new_pairs.end());
@@ -144,6 +145,7 @@ void WorldState<D>::find_pairs() {
             sensor_pairs.push_back({key.b, key.a});
         } else {
             contacts.push_back(new_contact(key));
+            caches.emplace_back();
         }
     }
 }
@@ -175,6 +177,7 @@ ContactRecord<D> WorldState<D>::new_contact(const PairKey& key) const {
     c.facet = key.part;
     c.body_a = shapes[key.a].body;
     c.body_b = shapes[key.b].body;
+    c.on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
     set_surface(c);
     return c;
 }
@@ -192,15 +195,22 @@ void WorldState<D>::set_surface(ContactRecord<D>& c) const {
     c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
     c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
     const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
+    const auto is_special = [&](std::uint32_t shape) {
+        const ShapeDefinition<D>& s = shapes[shape].definition;
+        return s.one_way || s.surface_velocity != Vec<D>{};
+    };
+    c.special = is_special(c.shape_a) || is_special(c.shape_b);
+    if (!c.special) c.surface_velocity = {};
     c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
 }
 
 /// Forgets the pairs whose boxes parted; only a box that is new can have left another.
 template <int D>
 void WorldState<D>::drop_pairs() {
+    if (moved_shapes.empty()) return;
     for (std::size_t i = 0; i < contacts.size();) {
         const ContactRecord<D>& c = contacts[i];
-        const bool changed = shapes[c.shape_a].moved || shapes[c.shape_b].moved;
+        const bool changed = has_new_box[c.shape_a] || has_new_box[c.shape_b];
         !changed || are_near(c) ? void(++i) : remove_contact(i);
     }
     for (std::size_t i = 0; i < sensor_pairs.size();) {
@@ -214,7 +224,7 @@ template <int D>
 bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
     const ShapeRecord<D>&a = shapes[c.shape_a], &b = shapes[c.shape_b];
     if (!overlaps(fat_box(a), fat_box(b))) return false;
-    if (!is_terrain_contact(c.shape_a, c.shape_b)) return true;
+    if (c.facet == whole) return true;
     const bool a_terrain = a.shape.kind == ShapeKind::terrain;
     const ShapeRecord<D>& ground = a_terrain ? a : b;
     const Aabb<D> box = box_in(frame_of(ground.body), fat_box(a_terrain ? b : a));
@@ -225,10 +235,19 @@ template <int D>
 void WorldState<D>::remove_contact(std::size_t contact) {
     const ContactRecord<D>& c = contacts[contact];
     pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
-    if (c.touching && !is_terrain_contact(c.shape_a, c.shape_b))
-        dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
+    if (c.touching && c.facet == whole) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
     contacts[contact] = contacts.back();
     contacts.pop_back();
+    caches[contact] = caches.back();
+    caches.pop_back();
+}
+
+/// The shapes of the body, or its centre of mass, changed.
+template <int D>
+void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (contacts[i].body_a == body || contacts[i].body_b == body) caches[i].forget();
+    }
 }
 
 template <int D>
@@ -280,6 +299,7 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
     template void WorldState<D>::drop_pairs();                                           \
     template void WorldState<D>::remove_contact(std::size_t);                            \
     template void WorldState<D>::remove_visits_of(std::uint32_t);                        \
+    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                     \
     template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                \
     template void WorldState<D>::place_visits_anew(std::uint32_t);                       \
     template void WorldState<D>::set_surface(ContactRecord<D>&) const;                   \

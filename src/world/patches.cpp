@@ -39,10 +39,10 @@ void WorldState<D>::list_fixed_contacts() {
     fixed_contacts.clear();
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         const ContactRecord<D>& c = contacts[i];
-        const bool a_fixed = types[c.body_a] == BodyType::fixed, b_fixed = types[c.body_b] == BodyType::fixed;
-        if (!a_fixed && !b_fixed) continue;
+        if (!c.on_fixed) continue;
+        const bool a_fixed = types[c.body_a] == BodyType::fixed;
         const std::uint32_t body = a_fixed ? c.body_b : c.body_a;
-        if (types[body] != BodyType::dynamic || !is_awake(body)) continue;
+        if (moving[body] != moves_freely) continue;
         fixed_contacts.push_back(
             {body, a_fixed ? c.shape_b : c.shape_a, a_fixed ? c.shape_a : c.shape_b, c.facet, i});
     }

@@ -58,11 +58,13 @@ void WorldState<D>::wake_islands() {
 /// A sleeper wakes when something that moves touches it, or is about to within this step.
 template <int D>
 void WorldState<D>::wake_touched(double dt) {
+    if (awake.size() == movable.size()) return;  // nobody sleeps
     for (const ContactRecord<D>& c : contacts) {
+        if (c.count == 0 || (moving[c.body_a] == stands_still) == (moving[c.body_b] == stands_still))
+            continue;
         const bool sleeper_a = types[c.body_a] == BodyType::dynamic && !is_awake(c.body_a);
         const bool sleeper_b = types[c.body_b] == BodyType::dynamic && !is_awake(c.body_b);
-        const bool hit = (sleeper_a && is_moving(c.body_b)) || (sleeper_b && is_moving(c.body_a));
-        if (!hit) continue;
+        if (!sleeper_a && !sleeper_b) continue;
         const Vec<D> approach = states[c.body_b].velocity - states[c.body_a].velocity;
         const double closing = dt * std::max(0.0, -dot(narrow<double>(c.normal), approach));
         for (int i = 0; i < c.count; ++i) {
@@ -73,12 +75,8 @@ void WorldState<D>::wake_touched(double dt) {
     }
     if (to_wake.empty()) return;
     wake_islands();
-    std::vector<std::uint8_t> listed(states.size(), 0);
-    for (const std::uint32_t i : awake) listed[i] = 1;
     for (const std::uint32_t i : movable) {
-        if (types[i] != BodyType::dynamic || !is_awake(i) || listed[i]) continue;
-        awake.push_back(i);
-        before.push_back(states[i]);
+        if (types[i] == BodyType::dynamic && is_awake(i) && moving[i] == stands_still) list_awake(i);
     }
 }
 

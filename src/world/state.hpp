@@ -14,6 +14,7 @@
 #include "dynamics/islands.hpp"
 #include "geometry/shape.hpp"
 #include "solver/solver.hpp"
+#include "world/contact_cache.hpp"
 
 namespace carom::detail {
 
@@ -25,7 +26,13 @@ struct ShapeRecord {
     std::uint32_t body = 0;
     std::int32_t leaf = Tree<D>::none;  ///< in the tree of fixed or of moving things, by the body's type
     bool in_fixed_tree = false;
-    bool moved = false;  ///< its fat box changed since pairs were last found
+};
+
+/// How a body moves in a step.
+enum : std::uint8_t {
+    stands_still,   ///< fixed, at rest or asleep
+    moved_by_user,  ///< kinematic, with a velocity
+    moves_freely,   ///< dynamic and awake
 };
 
 /// A contact of an awake dynamic body with a fixed shape.
@@ -91,11 +98,13 @@ struct WorldState {
     std::vector<ShapeRecord<D>> shapes;
     Tree<D> fixed_tree, moving_tree;
     std::vector<std::uint32_t> moved_shapes;
+    std::vector<std::uint8_t> has_new_box;  ///< by shape: its fat box changed since pairs were last found
 
     Forces<D> forces;
 
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
+    std::vector<ContactCache<D>> caches;  ///< by contact: where its points were found
     std::vector<SensorPair> sensor_pairs;
 
     // Results of the last step.
@@ -110,7 +119,7 @@ struct WorldState {
 
     // Working space of a step.
     std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
-    std::vector<std::uint8_t> moving;   ///< by body index: is it in `awake`?
+    std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
     std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
     std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
     std::vector<PairKey> new_pairs;
@@ -130,6 +139,7 @@ struct WorldState {
     // step.cpp: the stages of a step, in the order of `step`.
     void step(double dt);
     void begin_step(double dt);
+    void list_awake(std::uint32_t body);
     void sum_forces();
     void solve_contacts(double dt);
     void fly_free_bodies(double dt);
@@ -150,12 +160,16 @@ struct WorldState {
     bool are_near(const ContactRecord<D>& contact) const;
     ContactRecord<D> new_contact(const PairKey& key) const;
     void set_surface(ContactRecord<D>& contact) const;
+    void forget_manifolds_of(std::uint32_t body);
     const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
 
     // narrow_phase.cpp: who touches whom, and where.
     void collide(double dt);
-    void update_contact(ContactRecord<D>& contact, double dt) const;
-    void touch(ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b, double reach) const;
+    void update_contact(ContactRecord<D>& contact, ContactCache<D>& cache, double dt) const;
+    void touch(const ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b, double reach,
+               ContactCache<D>& cache) const;
+    void set_points(const ContactCache<D>& cache, const BodyState<D>& a, const BodyState<D>& b, double reach,
+                    ContactRecord<D>& contact) const;
     void meet_ahead(ContactRecord<D>& contact, double dt) const;
 
     // patches.cpp: flush fixed shapes are one surface.
@@ -207,6 +221,10 @@ struct WorldState {
     // mass.cpp
     void update_mass(std::uint32_t body);
 
+    /// May anything change between the two bodies in this step?
+    bool any_moves(std::uint32_t body_a, std::uint32_t body_b) const {
+        return moving[body_a] != stands_still || moving[body_b] != stands_still;
+    }
     bool is_awake(std::uint32_t body) const { return infos[body].awake && !infos[body].disabled; }
     /// Is the body awake and free to move, or moved by the user?
     bool is_moving(std::uint32_t body) const {

@@ -79,16 +79,22 @@ void WorldState<D>::begin_step(double) {
     });
     wake_islands();
 
-    for (const std::uint32_t i : awake) moving[i] = 0;
-    moving.resize(states.size(), 0);
+    for (const std::uint32_t i : awake) moving[i] = stands_still;
+    moving.resize(states.size(), stands_still);
     awake.clear();
+    before.clear();
     quarantined.clear();
     for (const std::uint32_t i : movable) {
         if (is_moving(i) && is_absurd(states[i])) quarantine(i);
-        if (is_moving(i) && !infos[i].disabled) awake.push_back(i);
+        if (is_moving(i) && !infos[i].disabled) list_awake(i);
     }
-    before.clear();
-    for (const std::uint32_t i : awake) before.push_back(states[i]);
+}
+
+template <int D>
+void WorldState<D>::list_awake(std::uint32_t body) {
+    awake.push_back(body);
+    before.push_back(states[body]);
+    moving[body] = types[body] == BodyType::dynamic ? moves_freely : moved_by_user;
 }
 
 template <int D>
@@ -107,13 +113,11 @@ void WorldState<D>::solve_contacts(double dt) {
     for (const std::uint32_t i : awake) touched[i] = 0;
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         const ContactRecord<D>& c = contacts[i];
-        const bool moves_a = types[c.body_a] == BodyType::dynamic && is_awake(c.body_a);
-        const bool moves_b = types[c.body_b] == BodyType::dynamic && is_awake(c.body_b);
-        if (c.count == 0 || !(moves_a || moves_b)) continue;
+        const bool is_free = moving[c.body_a] == moves_freely || moving[c.body_b] == moves_freely;
+        if (c.count == 0 || !is_free) continue;
         active.push_back(i);
         touched[c.body_a] = touched[c.body_b] = 1;
     }
-    for (const std::uint32_t i : awake) moving[i] = 1;
     solver.run({states, masses, types, moving, loads, contacts, active, dt, definition.substeps,
                 definition.restitution_threshold});
 }
