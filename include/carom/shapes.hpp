@@ -138,7 +138,8 @@ struct ShapeDefinition {
     Rotation<D> rotation{};  ///< turn of the shape's frame in the body's frame; unit length
     Material material{};
     Filter filter{};
-    /// Notices what overlaps it, touches nothing and has no mass. Sensors do not notice one another.
+    /// Notices what overlaps it, touches nothing, and has no mass unless the body has nothing but sensors.
+    /// Sensors do not notice one another.
     bool sensor = false;
     /// The side (in the shape's frame, any length but zero) from which others land on the shape: whoever
     /// comes from elsewhere passes through until it has left the shape.

@@ -27,10 +27,6 @@ template <int D>
 std::optional<Separation<D>> separate_facet(const Shape<D>& convex, const Facet<D>& facet,
                                             const Transform<D>& placed);
 
-/// A point about in the middle of a convex shape, in the frame of its body.
-template <int D>
-Vec<D> middle_of(const Shape<D>& convex);
-
 /// Entries of the shape-pair matrix: those of the facet that is nearest to the shape, or overlaps it most;
 /// of equals, the one that the terrain names first.
 template <int D>

@@ -269,7 +269,7 @@ Stretch<D> through(const Line<D>& line, const Shape<D>& shape) {
 
 /// A point in the shape.
 template <int D>
-Vec<D> middle_of(const Shape<D>& shape) {
+Vec<D> point_of(const Shape<D>& shape) {
     if (shape.kind == ShapeKind::capsule) return 0.5 * (shape.a + shape.b);
     return shape.kind == ShapeKind::hull ? shape.core->vertices.front() : shape.a;
 }
@@ -287,7 +287,7 @@ std::optional<CastHit<D>> cast_ray(const Shape<D>& shape, const Vec<D>& origin, 
     // The point of the ray nearest to the shape; a plane is as near everywhere.
     const double ahead = shape.kind == ShapeKind::plane
                              ? 0.0
-                             : std::clamp(dot(middle_of(shape) - origin, direction), 0.0, whole);
+                             : std::clamp(dot(point_of(shape) - origin, direction), 0.0, whole);
     const Stretch<D> found = through(Line<D>{origin + ahead * direction, direction}, shape);
     const double enter = ahead + found.enter, leave = ahead + found.leave;
     if (found.empty() || enter > whole || leave < 0) return std::nullopt;

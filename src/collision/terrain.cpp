@@ -5,15 +5,6 @@
 
 namespace carom::detail {
 
-template <int D>
-Vec<D> middle_of(const Shape<D>& convex) {
-    if (convex.kind == ShapeKind::capsule) return 0.5 * (convex.a + convex.b);
-    if (convex.kind != ShapeKind::hull) return convex.a;
-    Vec<D> sum{};
-    for (const Vec<D>& corner : convex.core->vertices) sum += corner;
-    return sum / double(convex.core->vertices.size());
-}
-
 namespace {
 
 /// The facet that is nearest to a shape or overlaps it most.
@@ -70,8 +61,6 @@ std::optional<Separation<D>> separate_from_terrain(const Shape<D>& a, const Shap
                          nearest->separation.distance};
 }
 
-template Vec<2> middle_of(const Shape<2>&);
-template Vec<3> middle_of(const Shape<3>&);
 template Manifold<2> collide_terrain(const Shape<2>&, const Shape<2>&, const Transform<2>&, double);
 template Manifold<3> collide_terrain(const Shape<3>&, const Shape<3>&, const Transform<3>&, double);
 template std::optional<Separation<2>> separate_from_terrain(const Shape<2>&, const Shape<2>&,

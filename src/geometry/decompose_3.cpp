@@ -164,10 +164,9 @@ std::optional<Halves> best_cut(const Piece& piece, int planes) {
             Halves halves{Piece(half(piece.surface, axis, level, -1)),
                           Piece(half(piece.surface, axis, level, 1))};
             if (halves[0].corners.empty() || halves[1].corners.empty()) continue;
-            const double cost =
-                halves[0].excess + halves[1].excess +
-                preference * (std::fabs(halves[0].hull_volume - halves[1].hull_volume) +
-                              mean_size * cut_area(halves[0].surface, axis, level));
+            const double cost = halves[0].excess + halves[1].excess +
+                                preference * (std::fabs(halves[0].hull_volume - halves[1].hull_volume) +
+                                              mean_size * cut_area(halves[0].surface, axis, level));
             if (cost >= least) continue;
             least = cost;
             best = std::move(halves);

@@ -314,6 +314,52 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
 }
 
 template <int D>
+Vec<D> middle_of(const Shape<D>& convex) {
+    if (convex.kind == ShapeKind::capsule) return 0.5 * (convex.a + convex.b);
+    if (convex.kind != ShapeKind::hull) return convex.a;
+    Vec<D> sum{};
+    for (const Vec<D>& corner : convex.core->vertices) sum += corner;
+    return sum / double(convex.core->vertices.size());
+}
+
+template <int D>
+double inner_radius(const Shape<D>& convex) {
+    const auto smallest = [&](const Vec<D>& half) {
+        double least = half.x;
+        for (int i = 1; i < D; ++i) least = std::min(least, half[i]);
+        return least;
+    };
+    switch (convex.kind) {
+        case ShapeKind::box:
+            return smallest(convex.b) + convex.radius;
+        case ShapeKind::hull: {
+            const Vec<D> middle = middle_of(convex);
+            double least = longest_length;
+            for (std::size_t i = 0; i < convex.core->normals.size(); ++i) {
+                const Vec<D>& normal = convex.core->normals[i];
+                double offset;
+                if constexpr (D == 2)
+                    offset = dot(normal, convex.core->vertices[i]);
+                else
+                    offset = convex.core->offsets[i];
+                least = std::min(least, offset - dot(normal, middle));
+            }
+            return least + convex.radius;
+        }
+        case ShapeKind::cylinder:
+            return std::min(convex.radius, convex.half_height);
+        case ShapeKind::cone: {
+            // Half way up the axis the side is half the base's radius away, less by the slope.
+            const double height = 2 * convex.half_height;
+            const double slope = height / std::sqrt(height * height + convex.radius * convex.radius);
+            return std::min(convex.half_height, 0.5 * convex.radius * slope);
+        }
+        default:
+            return convex.radius;
+    }
+}
+
+template <int D>
 std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& direction) {
     constexpr double facing_cosine = 0.999;
     FacePlane<D> best;
@@ -345,6 +391,10 @@ std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& di
 
 template Shape<2> make_shape(const ShapeDefinition<2>&);
 template Shape<3> make_shape(const ShapeDefinition<3>&);
+template Vec<2> middle_of(const Shape<2>&);
+template Vec<3> middle_of(const Shape<3>&);
+template double inner_radius(const Shape<2>&);
+template double inner_radius(const Shape<3>&);
 template std::optional<FacePlane<2>> facing_plane(const Shape<2>&, const Vec<2>&);
 template std::optional<FacePlane<3>> facing_plane(const Shape<3>&, const Vec<3>&);
 template Aabb<2> bounds(const Shape<2>&, const Transform<2>&);

@@ -81,6 +81,14 @@ Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed);
 template <int D>
 Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction);
 
+/// A point about in the middle of a convex shape, in the frame of its body.
+template <int D>
+Vec<D> middle_of(const Shape<D>& convex);
+
+/// Radius of a ball about that point that fits into the shape.
+template <int D>
+double inner_radius(const Shape<D>& convex);
+
 /// The flat face of the shape, rounding included, that looks most along the unit vector `direction` (in the
 /// body's frame): its plane n · x = offset. Nothing when that is more than 2.5 degrees off.
 template <int D>

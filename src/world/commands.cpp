@@ -55,7 +55,8 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition
                      Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) w.shapes.emplace_back();
-    w.shapes[i] = {std::move(shape), definition, body, Tree<D>::none, false};
+    w.shapes[i] = {std::move(shape), definition, body};
+    w.find_middle(i);
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -179,6 +180,7 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     }
     w.shapes[i].shape = std::move(made);
     w.shapes[i].definition = definition;
+    w.find_middle(i);
     w.update_mass(body);
     w.forget_manifolds_of(body);
     w.remove_leaf(i);

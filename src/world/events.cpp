@@ -28,8 +28,6 @@ template <int D>
 void WorldState<D>::report_contacts() {
     events.clear();
     std::swap(events.contact_ends, dropped_contacts);
-    place.resize(states.size());
-    for (std::uint32_t k = 0; k < awake.size(); ++k) place[awake[k]] = k;
     for (ContactRecord<D>& c : contacts) {
         if (!any_moves(c.body_a, c.body_b)) continue;
         bool held = false, near = false;
@@ -87,8 +85,7 @@ void WorldState<D>::report_terrain() {
 template <int D>
 void WorldState<D>::report_begin(const ContactRecord<D>& c) {
     const auto earlier = [&](std::uint32_t body) -> const BodyState<D>& {
-        const bool listed = place[body] < awake.size() && awake[place[body]] == body;
-        return listed ? before[place[body]] : states[body];
+        return moving[body] == stands_still ? states[body] : before[place[body]];
     };
     const auto relative_speed = [&](const BodyState<D>& one, const BodyState<D>& other,
                                     const ContactRecordPoint<D>& at) {

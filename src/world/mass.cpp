@@ -38,8 +38,9 @@ bool is_isotropic(const Symmetric3<double>& i) {
 template <int D>
 MassProperties<D> sum_of_shapes(const std::vector<ShapeDefinition<D>>& shapes) {
     std::vector<MassProperties<D>> parts;
+    const bool only_sensors = std::ranges::all_of(shapes, &ShapeDefinition<D>::sensor);
     for (const ShapeDefinition<D>& s : shapes) {
-        if (!s.sensor) parts.push_back(carom::mass_properties<D>(s));
+        if (!s.sensor || only_sensors) parts.push_back(carom::mass_properties<D>(s));
     }
     return combine<D>(parts);
 }
@@ -106,8 +107,18 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     }
 }
 
+template <int D>
+void WorldState<D>::find_middle(std::uint32_t shape) {
+    ShapeRecord<D>& s = shapes[shape];
+    if (s.shape.kind == ShapeKind::plane || s.shape.kind == ShapeKind::terrain) return;
+    s.middle = middle_of(s.shape);
+    s.inner_radius = inner_radius(s.shape);
+}
+
 template MassProperties<2> body_mass(const BodyDefinition<2>&, const std::vector<ShapeDefinition<2>>&);
 template MassProperties<3> body_mass(const BodyDefinition<3>&, const std::vector<ShapeDefinition<3>>&);
+template void WorldState<2>::find_middle(std::uint32_t);
+template void WorldState<3>::find_middle(std::uint32_t);
 template void WorldState<2>::update_mass(std::uint32_t);
 template void WorldState<3>::update_mass(std::uint32_t);
 

@@ -1,23 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/facet.hpp"
-#include "collision/manifold.hpp"
+#include "world/meeting.hpp"
 #include "world/state.hpp"
 
 namespace carom::detail {
 
 namespace {
-
-/// Shapes nearer than this are given contact points before they touch, so that the solver can let them come
-/// together without overlap.
-constexpr double speculative_distance = 0.02;
-
-/// Speed of the body's outermost point about its centre of mass.
-template <int D>
-double turning_speed(const BodyState<D>& s, const BodyMass<D>& m) {
-    return std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * m.radius;
-}
 
 /// The radius of the smaller body, of those that have one.
 template <int D>
@@ -33,34 +22,6 @@ double roundness(const Shape<D>& shape, const Vec<D>& normal) {
     if (shape.kind == ShapeKind::plane) return 0;
     if (shape.kind != ShapeKind::cylinder && shape.kind != ShapeKind::cone) return shape.radius;
     return std::fabs(dot(normal, shape.b)) < 0.5 ? shape.radius : 0;
-}
-
-/// Where a body will be after `time` seconds if only gravity acts on it.
-template <int D>
-BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity, double time) {
-    s.position += time * s.velocity;
-    if (m.inverse_mass > 0) s.position += (0.5 * time * time * m.gravity_scale) * gravity;
-    turn<D>(s, s.angular_velocity * time);
-    return s;
-}
-
-/// Manifold and gap of two shapes (see manifold.hpp), of which one may be a terrain: then of its facet.
-template <int D>
-Manifold<D> manifold_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
-                             const Transform<D>& b_in_a, double reach) {
-    if (a.kind == ShapeKind::terrain) return collide_facet<D>(b, a.terrain->facet(facet), b_in_a, reach);
-    if (b.kind != ShapeKind::terrain) return collide_shapes<D>(a, b, b_in_a, reach);
-    const Manifold<D> seen = collide_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a), reach);
-    return moved(exchanged(seen), b_in_a);
-}
-template <int D>
-std::optional<Separation<D>> gap_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
-                                         const Transform<D>& b_in_a) {
-    if (a.kind == ShapeKind::terrain) return separate_facet<D>(b, a.terrain->facet(facet), b_in_a);
-    if (b.kind != ShapeKind::terrain) return separate_shapes<D>(a, b, b_in_a);
-    auto gap = separate_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a));
-    if (gap) gap->axis = -rotate(b_in_a.rotation, gap->axis);
-    return gap;
 }
 
 }  // namespace
@@ -120,49 +81,6 @@ void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>&
     }
 }
 
-/// Bodies that are apart and may meet within the step are moved on to where they first come near
-/// (conservative advancement, Mirtich 1996): the gap divided by a bound on its rate of closing is a time in
-/// which they cannot meet. The points found there are given the gaps that they have now, so the solver stops
-/// the bodies at the right place, along the right normal, however fast they are; and bodies that pass one
-/// another do not touch.
-template <int D>
-void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
-    const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
-    const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
-    const double turning = turning_speed(sa, ma) + turning_speed(sb, mb) + length(definition.gravity) * dt;
-    const Vec<D> speed = sb.velocity - sa.velocity;
-    constexpr double near = 0.5 * speculative_distance;
-    constexpr int most_advances = 32;
-    double elapsed = 0;
-    BodyState<D> a = sa, b = sb;
-    for (int i = 0; i < most_advances; ++i) {
-        a = coasted(sa, ma, definition.gravity, elapsed);
-        b = coasted(sb, mb, definition.gravity, elapsed);
-        const auto gap = gap_between<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape, c.facet,
-                                        relative(frame(a, ma), frame(b, mb)));
-        if (!gap) return;
-        const bool last = i + 1 == most_advances;
-        if (gap->distance <= near || last) {
-            ContactCache<D> then;
-            touch(c, a, b, speculative_distance, then);
-            set_points(then, a, b, speculative_distance, c);
-            break;
-        }
-        const double closing = turning - dot(rotate(a.rotation, gap->axis), speed);
-        if (closing <= 0) return;
-        elapsed += (gap->distance - 0.5 * near) / closing;
-        if (elapsed > dt) return;
-    }
-    for (int i = 0; i < c.count; ++i) {
-        ContactRecordPoint<D>& p = c.points[i];
-        const Vec<D> arm_a = narrow<double>(p.arm_a), arm_b = narrow<double>(p.arm_b);
-        const Vec<D> turned =
-            elapsed * (cross(sb.angular_velocity, arm_b) - cross(sa.angular_velocity, arm_a));
-        const Vec<D> way = (b.position - sb.position) - (a.position - sa.position) + turned;
-        p.separation -= static_cast<float>(dot(narrow<double>(c.normal), way));
-    }
-}
-
 template <int D>
 void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, double dt) const {
     const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
@@ -175,7 +93,9 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         // Points that are out of reach by less than the bodies may move before this is done again count too.
         cache.way = static_cast<float>(reuse_share * smaller_radius(ma, mb));
         touch(c, sa, sb, reach + cache.way, cache);
-        if (!definition.continuous) cache.forget();  // it was made for this step's reach
+        // Round shapes roll away from their marks; and without continuous collision the reach is this step's.
+        const bool round = cache.roundness_a != 0 || cache.roundness_b != 0;
+        if ((round && cache.count > 0) || !definition.continuous) cache.forget();
     }
     set_points(cache, sa, sb, reach, c);
     if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) meet_ahead(c, dt);

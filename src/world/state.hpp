@@ -24,6 +24,8 @@ struct ShapeRecord {
     Shape<D> shape;
     ShapeDefinition<D> definition;
     std::uint32_t body = 0;
+    Vec<D> middle{};                    ///< of a convex shape, in the body's frame
+    double inner_radius = 0;            ///< of the ball about the middle that fits into it, m
     std::int32_t leaf = Tree<D>::none;  ///< in the tree of fixed or of moving things, by the body's type
     bool in_fixed_tree = false;
 };
@@ -170,7 +172,11 @@ struct WorldState {
                ContactCache<D>& cache) const;
     void set_points(const ContactCache<D>& cache, const BodyState<D>& a, const BodyState<D>& b, double reach,
                     ContactRecord<D>& contact) const;
+
+    // continuous.cpp: what is fast.
     void meet_ahead(ContactRecord<D>& contact, double dt) const;
+    void stop_at_obstacles();
+    void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);
 
     // patches.cpp: flush fixed shapes are one surface.
     void list_fixed_contacts();
@@ -219,6 +225,7 @@ struct WorldState {
                                       const Test& test) const;
 
     // mass.cpp
+    void find_middle(std::uint32_t shape);
     void update_mass(std::uint32_t body);
 
     /// May anything change between the two bodies in this step?

@@ -53,6 +53,7 @@ void WorldState<D>::step(double dt) {
     solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
     fly_free_bodies(dt);        // all others: the integrator
     move_kinematic_bodies(dt);  // what only the user moves
+    stop_at_obstacles();        // nothing passes through what stands still
     finish_bodies();            // quarantine, list of moved bodies
     report_contacts();          // what began, ended and hit
     sense();                    // who is inside the sensors
@@ -94,6 +95,8 @@ template <int D>
 void WorldState<D>::list_awake(std::uint32_t body) {
     awake.push_back(body);
     before.push_back(states[body]);
+    place.resize(states.size());
+    place[body] = static_cast<std::uint32_t>(awake.size() - 1);
     moving[body] = types[body] == BodyType::dynamic ? moves_freely : moved_by_user;
 }
 

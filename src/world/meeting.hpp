@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "collision/facet.hpp"
+#include "collision/manifold.hpp"
+#include "dynamics/body.hpp"
+
+namespace carom::detail {
+
+/// Shapes nearer than this are given contact points before they touch, so that the solver can let them come
+/// together without overlap.
+constexpr double speculative_distance = 0.02;
+
+/// Speed of the body's outermost point about its centre of mass.
+template <int D>
+double turning_speed(const BodyState<D>& s, const BodyMass<D>& m) {
+    return std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * m.radius;
+}
+
+/// Manifold and gap of two shapes (see manifold.hpp), of which one may be a terrain: then of its facet.
+template <int D>
+Manifold<D> manifold_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                             const Transform<D>& b_in_a, double reach) {
+    if (a.kind == ShapeKind::terrain) return collide_facet<D>(b, a.terrain->facet(facet), b_in_a, reach);
+    if (b.kind != ShapeKind::terrain) return collide_shapes<D>(a, b, b_in_a, reach);
+    const Manifold<D> seen = collide_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a), reach);
+    return moved(exchanged(seen), b_in_a);
+}
+template <int D>
+std::optional<Separation<D>> gap_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                                         const Transform<D>& b_in_a) {
+    if (a.kind == ShapeKind::terrain) return separate_facet<D>(b, a.terrain->facet(facet), b_in_a);
+    if (b.kind != ShapeKind::terrain) return separate_shapes<D>(a, b, b_in_a);
+    auto gap = separate_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a));
+    if (gap) gap->axis = -rotate(b_in_a.rotation, gap->axis);
+    return gap;
+}
+
+}  // namespace carom::detail
