@@ -26,6 +26,7 @@ for_run() {
     program node nodejs
     program npm npm
     [ -e /etc/ssl/certs/ca-certificates.crt ] || missing+=(ca-certificates) # for npm
+    package libhwy-dev
     package libfmt-dev
     package nlohmann-json3-dev
     package libcli11-dev

@@ -3,6 +3,7 @@
 /// All of Carom: include this one.
 #include "carom/body.hpp"
 #include "carom/collide.hpp"
+#include "carom/decompose.hpp"
 #include "carom/driver.hpp"
 #include "carom/error.hpp"
 #include "carom/events.hpp"

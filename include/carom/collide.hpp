@@ -93,13 +93,16 @@ using Sweep3 = Sweep<3>;
 
 // Positions that a shape is asked about lie within ±1e100 m. All shapes are closed and solid: to touch is to
 // overlap, and a way that begins inside ends there.
+// A chain, mesh or height field has no inside: what counts is its segments or triangles, each from its front
+// alone unless it is two-sided. The answer is that of the one which is nearest or is overlapped most.
 
 /// Do the two placed shapes overlap (touching counts)?
 template <int D>
 bool overlap(const Solid<D>& a, const Transform<D>& a_placed, const Solid<D>& b,
              const Transform<D>& b_placed);
 
-/// Axis of collision and depth, or the gap when the shapes are apart. Two planes have none: nothing.
+/// Axis of collision and depth, or the gap when the shapes are apart. Nothing for two planes, for a plane or
+/// ground against ground, and for a shape behind ground.
 template <int D>
 std::optional<Separation<D>> separation(const Solid<D>& a, const Transform<D>& a_placed, const Solid<D>& b,
                                         const Transform<D>& b_placed);

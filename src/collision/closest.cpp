@@ -66,7 +66,9 @@ ClosestPoints<D> closest_points(const Shape<D>& a, const Shape<D>& b, const Tran
 template <int D>
 bool overlap_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a) {
     const auto found = separate_shapes(a, b, b_in_a);
-    return (found ? found->distance : closest_points(a, b, b_in_a).distance) <= 0;
+    if (found) return found->distance <= 0;
+    const bool planes = a.kind == ShapeKind::plane && b.kind == ShapeKind::plane;
+    return planes && closest_points(a, b, b_in_a).distance <= 0;
 }
 
 template <int D>

@@ -9,7 +9,7 @@
 namespace carom::detail {
 
 /// One point of a persistent contact. Arms lead from the centres of mass to the point, along the world's
-/// axes.
+/// axes. The solver reads the first members by fours of floats, so their order matters to it.
 template <int D>
 struct ContactRecordPoint {
     Vec<D, float> arm_a{}, arm_b{};
@@ -23,24 +23,27 @@ struct ContactRecordPoint {
 template <int D>
 struct ContactRecord {
     std::uint32_t shape_a = 0, shape_b = 0;
+    std::uint32_t facet = 0;  ///< of the terrain, where one of the shapes is one
     std::uint32_t body_a = 0, body_b = 0;
     int count = 0;
-    float friction = 0;
     float restitution = 0;
+    float friction = 0;
+    float rolling = 0;  ///< coefficient × radius, m: resisting torque a unit of normal force
     float roundness_a = 0,
           roundness_b = 0;   ///< radius with which each shape rolls here, m; 0 for a corner or a face
-    float rolling = 0;       ///< coefficient × radius, m: resisting torque a unit of normal force
     Vec<D, float> normal{};  ///< from a to b
-    std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};
     Vec<D, float> friction_impulse{};  ///< on b in the last sub-step, N·s
-    Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
     float twist_impulse = 0;           ///< 3D: friction about the normal in the last sub-step, N·m·s
-    Vec<D, float> total_friction{};    ///< on b through the whole step, N·s
-    Vec<D, float> surface_velocity{};  ///< of b's surface against a's beside that of the bodies, m/s
-    bool touching = false;             ///< as last reported by an event
-    bool passing = false;              ///< through a one-way shape
-    bool merged = false;               ///< its points are kept by another contact of the same patch
-    float nearest = 0;                 ///< if merged: the smallest separation of its own points, m
+    Vec<D, float>
+        surface_velocity{};  ///< how fast b's surface runs along a's beside the motion of the bodies
+                             ///< (conveyor belts), m/s; friction works against slip, this included
+    Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
+    std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};
+    Vec<D, float> total_friction{};  ///< on b through the whole step, N·s
+    bool touching = false;           ///< as last reported by an event
+    bool passing = false;            ///< through a one-way shape
+    bool merged = false;             ///< its points are kept by another contact of the same patch
+    float nearest = 0;               ///< if merged: the smallest separation of its own points, m
 };
 
 /// The contact with a and b exchanged.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/hull.hpp"
+#include "geometry/terrain.hpp"
 #include "math/check.hpp"
 
 namespace carom::detail {
@@ -153,6 +154,14 @@ void fill(Shape<3>& shape, const Cone& cone, const Transform3& placed) {
     fill_round(shape, ShapeKind::cone, cone, placed);
 }
 
+template <int D, class Ground>
+requires std::is_constructible_v < Terrain<D>,
+const Ground&,
+    const Transform<D>& > void fill(Shape<D>& shape, const Ground& ground, const Transform<D>& placed) {
+    shape.kind = ShapeKind::terrain;
+    shape.terrain = std::make_shared<const Terrain<D>>(ground, placed);
+}
+
 /// The corner of the polytope that lies furthest along the direction; the first of several.
 template <int D>
 Vec<D> furthest_corner(const Polytope<D>& core, const Vec<D>& direction) {
@@ -194,7 +203,8 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
             const double a = dot(axis, shape.a), b = dot(axis, shape.b);
             return {std::min(a, b) - shape.radius, std::max(a, b) + shape.radius};
         }
-        case ShapeKind::hull: {
+        case ShapeKind::hull:
+        case ShapeKind::facet: {
             double lowest = 1e300, highest = -1e300;
             for (const Vec<D>& vertex : shape.core->vertices) {
                 const double distance = dot(axis, vertex);
@@ -209,6 +219,16 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
             double half = shape.radius;
             for (int i = 0; i < D; ++i) half += std::fabs(local[i]) * shape.b[i];
             return {middle - half, middle + half};
+        }
+        case ShapeKind::terrain: {
+            // The box that it has, seen from another frame.
+            const Aabb<D>& box = shape.terrain->bounds();
+            double lowest = 0, highest = 0;
+            for (int i = 0; i < D; ++i) {
+                lowest += axis[i] * (axis[i] < 0 ? box.upper[i] : box.lower[i]);
+                highest += axis[i] * (axis[i] < 0 ? box.lower[i] : box.upper[i]);
+            }
+            return {lowest, highest};
         }
         case ShapeKind::plane: {
             // Finite only across the plane: n · x ≤ offset.
@@ -274,6 +294,7 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
         case ShapeKind::capsule:
             return dot(shape.b - shape.a, direction) > 0 ? shape.b : shape.a;
         case ShapeKind::hull:
+        case ShapeKind::facet:
             return furthest_corner<D>(*shape.core, direction);
         case ShapeKind::box: {
             const Vec<D> local = unrotate(shape.rotation, direction);
@@ -286,6 +307,7 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
             if constexpr (D == 3) return round_support(shape, direction);
             break;
         case ShapeKind::plane:
+        case ShapeKind::terrain:
             break;
     }
     return {};

@@ -1,13 +1,56 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+/// For the arithmetic of the inner loops: what a loop holds in registers should stay there, and compilers do
+/// not put functions of this size into it by themselves.
+#define CAROM_INLINE [[gnu::always_inline]] inline
+#define CAROM_INLINE_LAMBDA __attribute__((always_inline))  // stands between the parameters and the body
 
 /// The lane functions for one lane: `float` itself. Constraint rows are written with these names only, so
-/// that the same rows run on wide lanes, whose masks are not `bool`.
+/// that the same rows run on wide lanes (simd/lanes.hpp), whose masks are not `bool`.
 namespace carom::detail {
+
+template <class F>
+constexpr int lane_count = F::count;
+template <>
+inline constexpr int lane_count<float> = 1;
+
+template <class F>
+CAROM_INLINE F load_lanes(const float* lanes) {
+    return F::load(lanes);
+}
+template <>
+CAROM_INLINE float load_lanes<float>(const float* lanes) {
+    return *lanes;
+}
 
 inline float maximum(float a, float b) { return a > b ? a : b; }
 inline float minimum(float a, float b) { return a < b ? a : b; }
 inline float square_root(float a) { return std::sqrt(a); }
+inline bool any(bool mask) { return mask; }
+
+/// Reads four floats that lie side by side at `base + index[lane] · stride` for every lane.
+inline void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride, float& a,
+                         float& b, float& c, float& d) {
+    const float* p = base + index[0] * stride;
+    a = p[0], b = p[1], c = p[2], d = p[3];
+}
+
+/// Writes them back. No two lanes may have the same index.
+inline void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride, float a, float b,
+                          float c, float d) {
+    float* p = base + index[0] * stride;
+    p[0] = a, p[1] = b, p[2] = c, p[3] = d;
+}
+
+/// The same, but only lanes with an index of at least `first` are written; the others may be equal.
+inline void scatter_quads_from(std::uint32_t first, float* base, const std::uint32_t* index,
+                               std::size_t stride, float a, float b, float c, float d) {
+    if (index[0] >= first) scatter_quads(base, index, stride, a, b, c, d);
+}
 
 }  // namespace carom::detail

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "carom/body.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
+#include "solver/blocks.hpp"
 #include "solver/bounce.hpp"
-#include "solver/rows.hpp"
+#include "solver/colours.hpp"
+#include "solver/lane_store.hpp"
+#include "solver/passes.hpp"
 
 namespace carom::detail {
 
@@ -37,73 +42,82 @@ class Solver {
 
   private:
     using Rows = ContactRows<D, float>;
-    using Body = Motion<D, float>;
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    /// What drives a body through the sub-steps.
-    struct Drive {
-        Vec<D, float> acceleration{};  ///< by outer forces
-        Angular<D, float> spin_acceleration{};
-        Vec<D, float> warm{};  ///< velocity that the constraints gave in the sub-step before
-        Angular<D, float> warm_spin{};
-        Vec<D, float> change{};  ///< whole change of velocity in the sub-step before
-        Angular<D, float> spin_change{};
-        Vec<D, float> start{};  ///< velocity at the start of this sub-step, after damping
-        Angular<D, float> start_spin{};
-        Vec<D, float> lost{},
-            lost_before{};  ///< what rounding cut off the velocity, now and before this sub-step
-        Angular<D, float> lost_spin{}, lost_spin_before{};
-        float damping = 1, spin_damping = 1;  ///< factors of a sub-step
-    };
-
-    struct Pair {
-        std::uint32_t a, b;  ///< slots; slot 0 stands for all that stands still
+    /// Contacts that are solved with one lane width: all that have a colour in the widest lanes, and the
+    /// overflow of the colouring one by one.
+    struct Section {
+        ContactBlocks<D> blocks;
+        std::vector<std::uint32_t> contacts;       ///< by place: which of the active ones, or `none`
+        std::vector<std::uint32_t> colour_starts;  ///< places
+        std::vector<std::uint32_t> unsettled;      ///< places of contacts that never carried an impulse
+        std::vector<std::uint32_t> struck;   ///< places of those that do for the first time in this sub-step
+        ContactBlocks<D> settling;           ///< copies of the struck ones, close together
+        std::vector<std::uint32_t> sources;  ///< by place in `settling`: where the copy is from, or `none`
     };
     /// A point that may bounce, as it was at the start of the step.
     struct Impact {
-        std::uint32_t row, point;
+        std::uint32_t section, place, point;
         float restitution;
         float speed;         ///< of separation, m/s
         float acceleration;  ///< of separation, by outer forces and steady constraints, m/s²
     };
 
+    // solver.cpp
+    void set_lengths(const SolverInput<D>& input);
+    template <class Pass>
+    void each_section(Pass&& pass);
+    void step_through(int substeps);
+
+    // load.cpp: from the world's records to lanes.
     void gather_bodies(const SolverInput<D>& input);
-    std::uint32_t slot(const SolverInput<D>& input, std::uint32_t body);
-    void load_body(const SolverInput<D>& input, std::uint32_t body, Body& motion, Weight<D, float>& weight,
-                   Drive& drive) const;
-    void prepare(const SolverInput<D>& input);
-    void prepare_contact(const ContactRecord<D>& record, Rows& rows, std::uint32_t a, std::uint32_t b) const;
-    void begin_warm();
-    void look_ahead();
-    void find_impacts(const SolverInput<D>& input);
-    Body& motion(std::uint32_t slot, Body& still);
-    void integrate_velocities();
-    template <bool biased>
-    void solve();
-    void push_velocity(Body& motion, Drive& drive, const Vec<D, float>& by, const Angular<D, float>& spin_by);
-    void find_struck();
-    void sum_struck();
+    void find_slots(const SolverInput<D>& input);
+    void load_body(const SolverInput<D>& input, std::uint32_t slot);
+    void deal_contacts(const SolverInput<D>& input);
+    void fill_section(const SolverInput<D>& input, Section& section);
+    void fill_block(const SolverInput<D>& input, Section& section, std::size_t block);
+    static void prefetch_record(const SolverInput<D>& input, const Section& section, std::size_t place);
+    void note_impacts(const Section& section, std::size_t place, const ContactRecord<D>& record);
+    static bool carries_impulse(const LaneStore<Rows>& rows, std::size_t place);
+    void store(const SolverInput<D>& input);
+    void store_contact(const Section& section, std::size_t place, ContactRecord<D>& record) const;
+
+    // settle.cpp: contacts that begin.
+    bool find_struck();
+    void copy_struck(Section& section);
+    void return_struck(Section& section);
     template <bool biased>
     void settle_struck();
-    void integrate_positions();
-    void finish_substep();
+    void sum_struck();
+    void mark_struck_bodies();
+
+    // restitution.cpp
+    void find_impacts(const SolverInput<D>& input);
     void bounce(const SolverInput<D>& input);
     void bounce(const Impact& impact, const Rebound& rebound);
-    void store(const SolverInput<D>& input);
+
+    BodySpan<D> body_span() { return {view_, drives_.data(), drives_.blocks_for(bodies_.size())}; }
 
     float h_ = 0;  ///< length of a sub-step
     SubStep<float> sub_{};
-    Softness<float> soft_{}, soft_fixed_{};
+    const Passes<D>* passes_ = nullptr;  ///< of the widest lanes
+
     std::vector<std::uint32_t> slot_of_;  ///< by body index; 0: none
-    std::vector<std::uint32_t> bodies_;   ///< body index by slot; the first is unused
-    std::vector<Body> motions_, kept_;
-    std::vector<Weight<D, float>> weights_;
-    std::vector<Drive> drives_;
-    std::vector<Pair> pairs_;
-    std::vector<Rows> rows_;
-    std::vector<std::uint8_t> settled_;        ///< by row: has it carried an impulse?
-    std::vector<std::uint32_t> struck_;        ///< rows that carry their first impulse in this sub-step
-    std::vector<std::uint8_t> struck_bodies_;  ///< by slot: has it such a row?
-    std::vector<Impact> impacts_;              ///< points with restitution
+    std::vector<std::uint32_t> bodies_;   ///< body index by slot; slot 0 stands for all that stands still
+    RecordView<D> view_;
+    std::vector<float> records_, free_axes_;
+    LaneStore<Drive<D, float>> drives_;  ///< by slot
+
+    std::vector<SlotPair> pairs_;  ///< by active contact
+    Colours colours_;
+    std::array<Section, 2> sections_;
+    std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
+    bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`
+    std::vector<std::uint8_t> is_struck_;      ///< by slot: has it a contact that is struck?
+    std::vector<std::uint32_t> struck_slots_;  ///< those that have
+    std::vector<std::pair<BlockSpan<D>, std::size_t>>
+        wanted_;                   ///< blocks with such contacts, and their widths
+    std::vector<Impact> impacts_;  ///< points with restitution
 };
 
 }  // namespace carom::detail

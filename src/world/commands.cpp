@@ -51,11 +51,12 @@ std::uint32_t new_body_place(WorldState<D>& w) {
 }
 
 template <int D>
-ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition) {
+ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
+                     Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) w.shapes.emplace_back();
     const bool listed = w.shapes[i].moved;  // a place that was freed since the last step is still on the list
-    w.shapes[i] = {make_shape(definition), definition, body, Tree<D>::none, false, listed};
+    w.shapes[i] = {std::move(shape), definition, body, Tree<D>::none, false, listed};
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -73,7 +74,7 @@ void drop_shape(WorldState<D>& w, ShapeId<D> id) {
 
 template <int D>
 BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
-    validate(definition);
+    std::vector<Shape<D>> shapes = validate(definition);
     WorldState<D>& w = *state_;
     const std::uint32_t i = new_body_place(w);
     w.types[i] = definition.type;
@@ -90,7 +91,8 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     m.linear_damping = definition.linear_damping;
     m.angular_damping = definition.angular_damping;
     m.locks = definition.locks;
-    for (const ShapeDefinition<D>& shape : definition.shapes) put_shape(w, i, shape);
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+        put_shape(w, i, definition.shapes[k], std::move(shapes[k]));
     w.update_mass(i);  // moves the state from the frame to the centre of mass
     if (definition.type != BodyType::fixed) {
         s.velocity = free_components<D>(m.locks, definition.velocity);
@@ -129,8 +131,9 @@ template <int D>
 ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definition) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(body);
-    require_place_for(make_shape(definition), w.types[i]);
-    const ShapeId<D> id = put_shape(w, i, definition);
+    Shape<D> shape = make_shape(definition);
+    require_place_for(shape, w.types[i]);
+    const ShapeId<D> id = put_shape(w, i, definition, std::move(shape));
     w.update_mass(i);
     w.insert_leaf(id.index);
     w.wake(i);
@@ -294,6 +297,8 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         definitions.push_back(w.shapes[id.index].definition);
         if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
             throw Error("type: a body with a plane must be fixed");
+        if (w.shapes[id.index].shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+            throw Error("type: a body with a chain, mesh or height field must be fixed or kinematic");
     }
     BodyDefinition<D> changed = w.infos[i].definition;
     changed.type = type;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "collision/manifold.hpp"
 #include "world/state.hpp"
@@ -39,8 +40,46 @@ void WorldState<D>::report_contacts() {
         if (c.merged) held = near = c.nearest <= parting_distance;
         const bool was_touching = c.touching;
         c.touching = held || (was_touching && near);
-        if (c.touching && !was_touching) report_begin(c);
-        if (!c.touching && was_touching) events.contact_ends.push_back({names(c.shape_a, c.shape_b)});
+        if (c.touching == was_touching || is_terrain_contact(c.shape_a, c.shape_b)) continue;
+        if (c.touching)
+            report_begin(c);
+        else
+            events.contact_ends.push_back({names(c.shape_a, c.shape_b)});
+    }
+    report_terrain();
+}
+
+/// A shape touches a terrain as long as it touches any of its facets.
+template <int D>
+void WorldState<D>::report_terrain() {
+    std::swap(terrain_before, terrain_touched);
+    terrain_touched.clear();
+    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+        const ContactRecord<D>& c = contacts[i];
+        if (c.touching && is_terrain_contact(c.shape_a, c.shape_b))
+            terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
+    }
+    const auto by_shapes = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
+        const auto key = [](const TerrainTouch<D>& t) {
+            return std::tuple(t.pair.shape_a.index, t.pair.shape_a.generation, t.pair.shape_b.index,
+                              t.pair.shape_b.generation);
+        };
+        return key(one) < key(other);
+    };
+    std::ranges::stable_sort(terrain_touched, by_shapes);
+    const auto same = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
+        return one.pair == other.pair;
+    };
+    terrain_touched.erase(std::unique(terrain_touched.begin(), terrain_touched.end(), same),
+                          terrain_touched.end());
+    const auto missing_in = [&](const std::vector<TerrainTouch<D>>& list, const TerrainTouch<D>& touch) {
+        return !std::ranges::binary_search(list, touch, by_shapes);
+    };
+    for (const TerrainTouch<D>& touch : terrain_touched) {
+        if (missing_in(terrain_before, touch)) report_begin(contacts[touch.contact]);
+    }
+    for (const TerrainTouch<D>& touch : terrain_before) {
+        if (missing_in(terrain_touched, touch)) events.contact_ends.push_back({touch.pair});
     }
 }
 

@@ -73,11 +73,21 @@ struct Folder {
     }
     void operator()(const Cylinder& s) { all(s.radius, s.height); }
     void operator()(const Cone& s) { all(s.radius, s.height); }
+    template <class T, std::size_t size>
+    void operator()(const std::array<T, size>& list) {
+        for (const T& item : list) (*this)(item);
+    }
+    void operator()(const Material& m) { all(m.density, m.friction, m.restitution, m.rolling_resistance); }
+    void operator()(const Chain& s) { all(s.points, s.loop, s.two_sided, s.materials, s.material_of); }
+    void operator()(const Mesh& s) { all(s.vertices, s.triangles, s.two_sided, s.materials, s.material_of); }
+    template <int D>
+    void operator()(const HeightField<D>& s) {
+        all(s.heights, s.spacing, s.materials, s.material_of);
+    }
     template <int D>
     void operator()(const ShapeDefinition<D>& s) {
-        all(s.geometry, s.center, s.rotation, s.material.density, s.material.friction, s.material.restitution,
-            s.material.rolling_resistance, s.filter.category, s.filter.mask, s.filter.group, s.sensor,
-            s.one_way, s.surface_velocity);
+        all(s.geometry, s.center, s.rotation, s.material, s.filter.category, s.filter.mask, s.filter.group,
+            s.sensor, s.one_way, s.surface_velocity);
     }
 
     template <int D>
@@ -120,8 +130,8 @@ struct Folder {
     }
     template <int D>
     void operator()(const ContactRecord<D>& c) {
-        all(c.shape_a, c.shape_b, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse, c.touching,
-            c.passing, c.merged);
+        all(c.shape_a, c.shape_b, c.facet, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse,
+            c.touching, c.passing, c.merged);
         for (int i = 0; i < c.count; ++i) all(c.points[i].impulse, c.points[i].feature, c.points[i].arm_a);
     }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/facet.hpp"
 #include "collision/manifold.hpp"
 #include "world/state.hpp"
 
@@ -36,6 +37,25 @@ BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity
     return s;
 }
 
+/// Manifold and gap of two shapes (see manifold.hpp), of which one may be a terrain: then of its facet.
+template <int D>
+Manifold<D> manifold_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                             const Transform<D>& b_in_a, double reach) {
+    if (a.kind == ShapeKind::terrain) return collide_facet<D>(b, a.terrain->facet(facet), b_in_a, reach);
+    if (b.kind != ShapeKind::terrain) return collide_shapes<D>(a, b, b_in_a, reach);
+    const Manifold<D> seen = collide_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a), reach);
+    return moved(exchanged(seen), b_in_a);
+}
+template <int D>
+std::optional<Separation<D>> gap_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                                         const Transform<D>& b_in_a) {
+    if (a.kind == ShapeKind::terrain) return separate_facet<D>(b, a.terrain->facet(facet), b_in_a);
+    if (b.kind != ShapeKind::terrain) return separate_shapes<D>(a, b, b_in_a);
+    auto gap = separate_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a));
+    if (gap) gap->axis = -rotate(b_in_a.rotation, gap->axis);
+    return gap;
+}
+
 }  // namespace
 
 /// Contact points of two bodies that are placed so; the gaps are those in these places.
@@ -45,7 +65,7 @@ void WorldState<D>::touch(ContactRecord<D>& c, const BodyState<D>& a, const Body
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
     const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
     const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
-    Manifold<D> m = collide_shapes<D>(shape_a, shape_b, b_in_a, reach);
+    Manifold<D> m = manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach);
     const bool on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
     if (on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
     c.normal = narrow<float>(rotate(a.rotation, m.normal));
@@ -85,8 +105,8 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
     for (int i = 0; i < most_advances; ++i) {
         a = coasted(sa, ma, definition.gravity, elapsed);
         b = coasted(sb, mb, definition.gravity, elapsed);
-        const auto gap = separate_shapes<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape,
-                                            relative(frame(a, ma), frame(b, mb)));
+        const auto gap = gap_between<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape, c.facet,
+                                        relative(frame(a, ma), frame(b, mb)));
         if (!gap) return;
         const bool last = i + 1 == most_advances;
         if (gap->distance <= near || last) {

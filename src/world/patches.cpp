@@ -43,10 +43,11 @@ void WorldState<D>::list_fixed_contacts() {
         if (!a_fixed && !b_fixed) continue;
         const std::uint32_t body = a_fixed ? c.body_b : c.body_a;
         if (types[body] != BodyType::dynamic || !is_awake(body)) continue;
-        fixed_contacts.push_back({body, a_fixed ? c.shape_b : c.shape_a, a_fixed ? c.shape_a : c.shape_b, i});
+        fixed_contacts.push_back(
+            {body, a_fixed ? c.shape_b : c.shape_a, a_fixed ? c.shape_a : c.shape_b, c.facet, i});
     }
     std::ranges::sort(fixed_contacts, [](const FixedContact& a, const FixedContact& b) {
-        return std::tie(a.body, a.shape, a.other) < std::tie(b.body, b.shape, b.other);
+        return std::tie(a.body, a.shape, a.other, a.facet) < std::tie(b.body, b.shape, b.other, b.facet);
     });
 
     // Only a shape that has several needs to know what they were.
@@ -112,7 +113,7 @@ template <int D>
 void WorldState<D>::merge_members(std::uint32_t body, std::span<const ContactRecord<D>> before_step) {
     const auto was_patch = [&](const ContactRecord<D>& c) {
         return std::ranges::any_of(before_step, [&](const ContactRecord<D>& old) {
-            return old.shape_a == c.shape_a && old.shape_b == c.shape_b &&
+            return old.shape_a == c.shape_a && old.shape_b == c.shape_b && old.facet == c.facet &&
                    dot(old.normal, c.normal) > same_normal_cosine;
         });
     };

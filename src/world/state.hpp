@@ -30,8 +30,8 @@ struct ShapeRecord {
 
 /// A contact of an awake dynamic body with a fixed shape.
 struct FixedContact {
-    std::uint32_t body = 0, shape = 0;  ///< what moves
-    std::uint32_t other = 0;            ///< the fixed shape
+    std::uint32_t body = 0, shape = 0;   ///< what moves
+    std::uint32_t other = 0, facet = 0;  ///< the fixed shape
     std::uint32_t contact = 0;
 };
 
@@ -40,6 +40,13 @@ struct SensorPair {
     std::uint32_t sensor = 0, visitor = 0;  ///< shapes
     bool inside = false;
     bool placed_anew = true;  ///< one of the two was moved by the user, or the pair is new
+};
+
+/// A shape and a terrain that touch, by some of its facets.
+template <int D>
+struct TerrainTouch {
+    ShapePair<D> pair;
+    std::uint32_t contact = 0;  ///< the first of them
 };
 
 /// What happened: filled by a step and by what is removed before it.
@@ -98,13 +105,15 @@ struct WorldState {
     std::vector<ContactEnd<D>>
         dropped_contacts;  ///< that touched when they were dropped, since events were last reported
     std::vector<SensorEnd<D>> dropped_visits;
+    std::vector<TerrainTouch<D>> terrain_touched,
+        terrain_before;  ///< now and a step ago, in the order of shapes
 
     // Working space of a step.
     std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
     std::vector<std::uint8_t> moving;   ///< by body index: is it in `awake`?
     std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
     std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
-    std::vector<std::uint64_t> new_pairs;
+    std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
     std::vector<std::uint8_t> touched;
@@ -130,13 +139,16 @@ struct WorldState {
 
     // pairs.cpp: who is near whom.
     void refresh_boxes(double dt);
-    void find_pairs();
     void drop_pairs();
+    void find_pairs();
     void insert_leaf(std::uint32_t shape);
     void remove_leaf(std::uint32_t shape);
     void mark_moved(std::uint32_t shape);
     bool may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const;
-    ContactRecord<D> new_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
+    bool is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
+    void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
+    bool are_near(const ContactRecord<D>& contact) const;
+    ContactRecord<D> new_contact(const PairKey& key) const;
     void set_surface(ContactRecord<D>& contact) const;
     const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
 
@@ -165,6 +177,7 @@ struct WorldState {
 
     // events.cpp: what began, ended and hit.
     void report_contacts();
+    void report_terrain();
     void report_begin(const ContactRecord<D>& contact);
     void sense();
     bool overlap(std::uint32_t shape_a, std::uint32_t shape_b) const;

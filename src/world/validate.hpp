@@ -24,8 +24,9 @@ auto within(const std::string& prefix, Work&& work) {
 /// Each throws `Error` that names the field.
 template <int D>
 void validate(const WorldDefinition<D>& definition);
+/// Returns the shapes, made ready.
 template <int D>
-void validate(const BodyDefinition<D>& definition);
+std::vector<Shape<D>> validate(const BodyDefinition<D>& definition);
 /// Numbers only; whether the bodies exist is the world's to check.
 template <int D>
 void validate(const ForceDefinition<D>& definition);

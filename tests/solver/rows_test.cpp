@@ -10,7 +10,7 @@ namespace {
 using test::Random;
 
 constexpr float rounding = 2e-5f;  // of a few operations on numbers up to about 10
-constexpr SubStep<float> sub{240, 3};
+constexpr SubStep<float> sub{240, 3, {20, 0.8f, 0.2f}, {40, 0.9f, 0.1f}};
 
 template <class T>
 class RowsIn : public testing::Test {};
@@ -68,18 +68,19 @@ struct Touch {
           wa(random_weight<D>(random)),
           wb(random_weight<D>(random)) {
         rows.normal = narrow<float>(random.direction<D>());
-        rows.tangents = tangents<D>(rows.normal);
+        const auto t = tangents<D>(rows.normal);
+        rows.tangent = t[0];
         NormalRow<D, float>& p = rows.points[0];
         p.arm_a = rows.arm_a = random_vec<D>(random, 1);
         p.arm_b = rows.arm_b = random_vec<D>(random, 1);
         p.mass = 1 / softness_along(rows.normal);
-        const float k11 = softness_along(rows.tangents[0]);
+        const float k11 = softness_along(t[0]);
         if constexpr (D == 2) {
             rows.patch_mass[0] = 1 / k11;
         } else {
-            const float k22 = softness_along(rows.tangents[1]);
+            const float k22 = softness_along(t[1]);
             // The mixed entry from that of the sum: (t1 + t2)ᵀ K (t1 + t2) = k11 + 2 k12 + k22.
-            const float k12 = 0.5f * (softness_along(rows.tangents[0] + rows.tangents[1]) - k11 - k22);
+            const float k12 = 0.5f * (softness_along(t[0] + t[1]) - k11 - k22);
             const float det = k11 * k22 - k12 * k12;
             rows.patch_mass = {k22 / det, -k12 / det, k11 / det};
             rows.twist_mass = 1 / dot(rows.normal, (wa.inertia + wb.inertia) * rows.normal);
@@ -153,10 +154,11 @@ TYPED_TEST(RowsIn, AnOverlapIsPushedApartNotFasterThanAllowed) {
     for (int i = 0; i < 100; ++i) {
         Touch<D> t(random);
         t.a = t.b = {};
-        t.rows.soft = {20, 0.8f, 0.2f};
-        t.rows.points[0].separation = i % 2 ? -0.01f : -100;
+        const bool firm = i % 4 < 2, slight = i % 2;
+        t.rows.firm = firm ? 1 : 0;
+        t.rows.points[0].separation = slight ? -0.01f : -100;
         solve_normals<true>(t.rows, t.a, t.b, t.wa, t.wb, sub);
-        EXPECT_NEAR(-t.approach(), i % 2 ? 0.01 * 20 * 0.8 : 3, rounding);
+        EXPECT_NEAR(-t.approach(), !slight ? 3 : firm ? 0.01 * 40 * 0.9 : 0.01 * 20 * 0.8, rounding);
     }
 }
 
@@ -172,8 +174,7 @@ TYPED_TEST(RowsIn, FrictionSticksInsideTheConeAndSlipsOnIt) {
         const float limit = t.rows.friction * load;
         const Vec<D, float> slip = t.slip();
         solve_patch(t.rows, t.a, t.b, t.wa, t.wb, load);
-        Vec<D, float> impulse{};
-        for (int k = 0; k < D - 1; ++k) impulse += t.rows.friction_impulse[k] * t.rows.tangents[k];
+        const Vec<D, float> impulse = along_tangents(t.rows, t.rows.friction_impulse);
         EXPECT_LE(length(impulse), limit + rounding);
         EXPECT_LE(dot(impulse, slip), rounding);
         const bool inside = length(impulse) < limit - rounding;
@@ -194,7 +195,7 @@ TEST(Rows, FrictionIsACone) {
         t.wa = {};
         t.wb = {{1, 1, 1}, diagonal(2.5f, 2.5f, 2.5f)};
         t.rows.normal = {0, 1, 0};
-        t.rows.tangents = tangents<3>(t.rows.normal);
+        t.rows.tangent = tangents<3>(t.rows.normal)[0];
         t.rows.arm_a = {};
         t.rows.arm_b = {0, -1, 0};
         t.rows.patch_mass = {1 / 3.5f, 0, 1 / 3.5f};
@@ -204,6 +205,19 @@ TEST(Rows, FrictionIsACone) {
         const Vec<3, float> direction = normalized(t.b.v);
         solve_patch(t.rows, t.a, t.b, t.wa, t.wb, 2.0f);
         EXPECT_LT(length(t.b.v - 9.0f * direction), 3e-6f) << degrees;
+    }
+}
+
+/// A belt: friction that holds makes the bodies move as the surfaces run, the other way round.
+TYPED_TEST(RowsIn, FrictionAimsAtTheSpeedOfTheSurfaces) {
+    constexpr int D = TypeParam::value;
+    Random random(12);
+    for (int i = 0; i < 100; ++i) {
+        Touch<D> t(random);
+        t.rows.friction = 1000;
+        for (int k = 0; k < D - 1; ++k) t.rows.surface_speed[k] = static_cast<float>(random.between(-2, 2));
+        solve_patch(t.rows, t.a, t.b, t.wa, t.wb, 1000.0f);
+        EXPECT_LT(length(t.slip() + along_tangents(t.rows, t.rows.surface_speed)), rounding);
     }
 }
 
@@ -266,26 +280,29 @@ TYPED_TEST(RowsIn, SolvingNeverAddsEnergy) {
     }
 }
 
-/// The end of an arm after a turn is right to third order in the angle.
-TYPED_TEST(RowsIn, TheWayOfAnArmIsOfSecondOrder) {
+/// The height of the end of an arm after a turn is right to third order in the angle.
+TYPED_TEST(RowsIn, TheRiseOfAnArmIsOfSecondOrder) {
     constexpr int D = TypeParam::value;
     Random random(11);
     for (int i = 0; i < 50; ++i) {
-        const Vec<D> arm = random.in_cube<D>(1);
+        const Vec<D> arm = random.in_cube<D>(1), normal = random.direction<D>();
         const Angular<D, float> turn = random_spin<D>(random);
         const auto error = [&](float share) {
-            Motion<D, float> m;
-            m.turned = turn * share;
+            const Angular<D, float> turned = turn * share;
             Angular<D> exact;
             if constexpr (D == 2)
-                exact = m.turned;
+                exact = turned;
             else
-                exact = narrow<double>(m.turned);
-            const Vec<D> expected = rotate(exp_rotation<D>(exact), arm) - arm;
-            return length(narrow<double>(way_of(m, narrow<float>(arm))) - expected);
+                exact = narrow<double>(turned);
+            const double expected = dot(normal, rotate(exp_rotation<D>(exact), arm) - arm);
+            const Vec<D, float> n = narrow<float>(normal), r = narrow<float>(arm);
+            return std::fabs(rise(Turn<D, float>(n, turned), n, r, cross(r, n)) - expected);
         };
-        EXPECT_LE(error(0.1f), 0.05);
-        EXPECT_LT(error(0.05f), 0.14 * error(0.1f) + 1e-7);
+        for (const float share : {0.2f, 0.1f, 0.05f}) {
+            const double angle = share * size(turn);
+            EXPECT_LE(error(share), angle * angle * angle / 6 * length(arm) + 1e-6)
+                << "the rest of the series";
+        }
     }
 }
 

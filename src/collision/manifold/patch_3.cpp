@@ -234,7 +234,8 @@ double facing(const Facet3& facet, const Vec3& direction) {
 }  // namespace
 
 std::optional<Manifold<3>> contact_patch(const Pair3& pair, const Nearest3& nearest, double reach) {
-    if (pair.a.kind == ShapeKind::ball) return single_point(pair, nearest, reach);
+    if (pair.a.kind == ShapeKind::ball || pair.b.kind == ShapeKind::ball)
+        return single_point(pair, nearest, reach);
 
     Memory memory;
     Facet3 a(memory.resource), b(memory.resource);

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+// Only for sources that are compiled for one instruction set: everything here lives in a namespace of that
+// set, so that sources compiled for different sets share no inline function.
+#define HWY_COMPILE_ONLY_STATIC
+#include <hwy/highway.h>
+
+#include "simd/scalar.hpp"
+
+namespace carom::detail::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<float>;
+using Register = hn::Vec<Tag>;
+
+/// Four floats each for the lanes 0, 4, 8, ... of `index`.
+template <int n>
+CAROM_INLINE auto load_quads(const float* base, const std::uint32_t* index, std::size_t stride) {
+    const hn::FixedTag<float, n> tag;
+    if constexpr (n == 4) {
+        return hn::LoadU(tag, base + index[0] * stride);
+    } else {
+        return hn::Combine(tag, load_quads<n / 2>(base, index + n / 2, stride),
+                           load_quads<n / 2>(base, index, stride));
+    }
+}
+
+template <int n, class V>
+CAROM_INLINE void store_quads(float* base, const std::uint32_t* index, std::size_t stride, V v) {
+    if constexpr (n == 4) {
+        hn::StoreU(v, hn::FixedTag<float, 4>(), base + index[0] * stride);
+    } else {
+        const hn::FixedTag<float, n / 2> half;
+        store_quads<n / 2>(base, index, stride, hn::LowerHalf(half, v));
+        store_quads<n / 2>(base, index + n / 2, stride, hn::UpperHalf(half, v));
+    }
+}
+
+/// Transposes each group of four lanes: from a register a lane to a register a component, and back.
+CAROM_INLINE void transpose(Register& a, Register& b, Register& c, Register& d) {
+    const Tag tag;
+    const hn::Repartition<std::uint64_t, Tag> pairs;
+    const auto low_ab = hn::BitCast(pairs, hn::InterleaveLower(tag, a, b));
+    const auto high_ab = hn::BitCast(pairs, hn::InterleaveUpper(tag, a, b));
+    const auto low_cd = hn::BitCast(pairs, hn::InterleaveLower(tag, c, d));
+    const auto high_cd = hn::BitCast(pairs, hn::InterleaveUpper(tag, c, d));
+    a = hn::BitCast(tag, hn::InterleaveLower(pairs, low_ab, low_cd));
+    b = hn::BitCast(tag, hn::InterleaveUpper(pairs, low_ab, low_cd));
+    c = hn::BitCast(tag, hn::InterleaveLower(pairs, high_ab, high_cd));
+    d = hn::BitCast(tag, hn::InterleaveUpper(pairs, high_ab, high_cd));
+}
+
+/// Several floats side by side, as many as the instruction set has in a register. Sums, products, quotients
+/// and roots are those of IEEE 754 in every lane, so a computation gives the same bits in lanes of any width.
+class Lanes {
+  public:
+    static constexpr int count = HWY_LANES(float);
+    struct Mask {
+        hn::Mask<Tag> m;
+        friend Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
+        friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
+    };
+
+    Lanes() : v_(hn::Zero(Tag())) {}
+    explicit Lanes(float all) : v_(hn::Set(Tag(), all)) {}
+    static Lanes load(const float* lanes) { return hn::LoadU(Tag(), lanes); }
+
+    friend Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v_, b.v_); }
+    friend Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v_, b.v_); }
+    friend Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v_, b.v_); }
+    friend Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v_, b.v_); }
+    friend Lanes operator-(Lanes a) { return hn::Neg(a.v_); }
+    friend Mask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v_, b.v_)}; }
+
+    friend Lanes select(Mask mask, Lanes yes, Lanes no) { return hn::IfThenElse(mask.m, yes.v_, no.v_); }
+    friend Lanes fabs(Lanes a) { return hn::Abs(a.v_); }
+    friend Lanes sqrt(Lanes a) { return hn::Sqrt(a.v_); }
+    friend Lanes square_root(Lanes a) { return hn::Sqrt(a.v_); }
+    friend bool any(Mask mask) { return !hn::AllFalse(Tag(), mask.m); }
+    // The second operand where they are equal or one is not a number, like `a > b ? a : b`.
+#if HWY_ARCH_X86
+    friend Lanes maximum(Lanes a, Lanes b) { return hn::Max(a.v_, b.v_); }
+    friend Lanes minimum(Lanes a, Lanes b) { return hn::Min(a.v_, b.v_); }
+#else
+    friend Lanes maximum(Lanes a, Lanes b) { return select(a > b, a, b); }
+    friend Lanes minimum(Lanes a, Lanes b) { return select(b > a, a, b); }
+#endif
+
+    CAROM_INLINE friend void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride,
+                                          Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+        a.v_ = load_quads<count>(base, index, stride);
+        b.v_ = load_quads<count>(base, index + 1, stride);
+        c.v_ = load_quads<count>(base, index + 2, stride);
+        d.v_ = load_quads<count>(base, index + 3, stride);
+        transpose(a.v_, b.v_, c.v_, d.v_);
+    }
+
+    CAROM_INLINE friend void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride,
+                                           Lanes a, Lanes b, Lanes c, Lanes d) {
+        transpose(a.v_, b.v_, c.v_, d.v_);
+        store_quads<count>(base, index, stride, a.v_);
+        store_quads<count>(base, index + 1, stride, b.v_);
+        store_quads<count>(base, index + 2, stride, c.v_);
+        store_quads<count>(base, index + 3, stride, d.v_);
+    }
+
+    CAROM_INLINE friend void scatter_quads_from(std::uint32_t first, float* base, const std::uint32_t* index,
+                                                std::size_t stride, Lanes a, Lanes b, Lanes c, Lanes d) {
+        alignas(64) float all[4][count];
+        const Tag tag;
+        hn::Store(a.v_, tag, all[0]);
+        hn::Store(b.v_, tag, all[1]);
+        hn::Store(c.v_, tag, all[2]);
+        hn::Store(d.v_, tag, all[3]);
+        for (int lane = 0; lane < count; ++lane) {
+            if (index[lane] < first) continue;
+            float* p = base + index[lane] * stride;
+            for (int k = 0; k < 4; ++k) p[k] = all[k][lane];
+        }
+    }
+
+  private:
+    Lanes(Register v) : v_(v) {}
+
+    Register v_;
+};
+
+}  // namespace carom::detail::HWY_NAMESPACE

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "dynamics/contact.hpp"
+#include "solver/body_records.hpp"
+#include "solver/drive.hpp"
+#include "solver/prepare.hpp"
+#include "solver/rows.hpp"
+
+namespace carom::detail {
+
+/// What some contact of a block has, so that the passes may leave out what none has.
+enum Trait : std::uint8_t { some_fixed = 1, some_round = 2, some_rolling = 4 };
+
+/// Blocks of contacts, to be solved in this order. The contacts of a block share no body that can be pushed.
+template <int D>
+struct BlockSpan {
+    float* rows = nullptr;  ///< of `ContactRows<D, F>`
+    const std::uint32_t* a = nullptr;
+    const std::uint32_t* b = nullptr;  ///< slots of the bodies, one a lane
+    const std::uint8_t* traits = nullptr;
+    std::size_t blocks = 0;
+};
+
+/// Which contact each lane of a block takes.
+template <int D>
+struct BlockSource {
+    const ContactRecord<D>* records = nullptr;
+    const std::uint32_t* index = nullptr;  ///< by lane; a lane without a contact may name any
+    const float* count = nullptr;          ///< by lane: how many points; 0 in a lane without a contact
+};
+
+/// All bodies with what drives them.
+template <int D>
+struct BodySpan {
+    RecordView<D> view;
+    float* drives = nullptr;  ///< of `Drive<D, F>`
+    std::size_t blocks = 0;
+};
+
+/// The inner loops of the solver for one lane width.
+template <int D>
+struct Passes {
+    static constexpr std::size_t most_lanes = 16;
+    int width;
+
+    // Over contacts.
+    /// Fills one block from contact records, and applies the impulses that they have kept.
+    void (*load)(const BlockSpan<D>&, const BlockSource<D>&, const RecordView<D>&);
+    void (*warm_start)(const BlockSpan<D>&, const RecordView<D>&);
+    /// The records have to hold the change of velocity in place of the velocity and the acceleration by outer
+    /// forces in place of the way.
+    void (*look_ahead)(const BlockSpan<D>&, const RecordView<D>&, float h);
+    void (*solve)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
+    void (*solve_and_tally)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
+    void (*solve_with_friction)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
+    void (*relax)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
+    void (*tally)(const BlockSpan<D>&);
+
+    // Over bodies.
+    /// Takes the velocities as what the kept impulses make, and leaves what `look_ahead` wants.
+    void (*begin_warm)(const BodySpan<D>&, float h);
+    /// Puts the velocities of the start back, ready for the first sub-step.
+    void (*begin)(const BodySpan<D>&, float h);
+    void (*integrate_velocities)(const BodySpan<D>&, float h);
+    void (*integrate_positions)(const BodySpan<D>&, float h);
+    void (*finish)(const BodySpan<D>&, float h);
+    void (*finish_and_integrate_velocities)(const BodySpan<D>&, float h);
+};
+
+/// The passes for a lane width that can run here.
+template <int D>
+const Passes<D>& passes_of_width(int width);
+template <>
+const Passes<2>& passes_of_width<2>(int width);
+template <>
+const Passes<3>& passes_of_width<3>(int width);
+
+}  // namespace carom::detail

@@ -1,0 +1,158 @@
+#pragma once
+
+#include "solver/load_rows.hpp"
+#include "solver/passes.hpp"
+
+/// The passes written out for a lane type. Included by one source file for each width, which is compiled for
+/// the instructions that the width needs. `flatten` puts all arithmetic into the loop, so that what is held
+/// in registers stays there.
+namespace carom::detail {
+
+template <int D, class F>
+struct PassesIn {
+    using Rows = ContactRows<D, F>;
+    static constexpr int width = lane_count<F>;
+
+    static SubStep<F> widen(const SubStep<float>& s) {
+        const auto widen = [](const Softness<float>& soft) {
+            return Softness<F>{F(soft.bias_rate), F(soft.mass_scale), F(soft.impulse_scale)};
+        };
+        return {F(s.inverse_length), F(s.push_speed), widen(s.soft), widen(s.firm)};
+    }
+
+    static Extras extras_of(std::uint8_t traits) {
+        return {(traits & some_round) != 0, (traits & some_rolling) != 0};
+    }
+
+    /// `work(rows, a, b, extras)` for each block, with its bodies read before and written after.
+    template <class Work>
+    CAROM_INLINE static void each_block(const BlockSpan<D>& span, const RecordView<D>& bodies, Work work) {
+        Rows* rows = reinterpret_cast<Rows*>(span.rows);
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            const std::uint32_t *slots_a = span.a + k * width, *slots_b = span.b + k * width;
+            Body<D, F> a = gather<F>(bodies, slots_a), b = gather<F>(bodies, slots_b);
+            const bool fixed = span.traits[k] & some_fixed;
+            work(rows[k], a, b, extras_of(span.traits[k]));
+            scatter_velocity(bodies, slots_a, a, fixed);
+            scatter_velocity(bodies, slots_b, b, fixed);
+        }
+    }
+
+    static void load(const BlockSpan<D>& span, const BlockSource<D>& source, const RecordView<D>& bodies) {
+        Rows& rows = *reinterpret_cast<Rows*>(span.rows);
+        Body<D, F> a = gather<F>(bodies, span.a), b = gather<F>(bodies, span.b);
+        const Extras extras = extras_of(span.traits[0]);
+        load_rows(rows, source, extras);
+        weigh_rows(rows, a.weight, b.weight, extras);
+        detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
+        const bool fixed = span.traits[0] & some_fixed;
+        scatter_velocity(bodies, span.a, a, fixed);
+        scatter_velocity(bodies, span.b, b, fixed);
+    }
+
+    static void warm_start(const BlockSpan<D>& span, const RecordView<D>& bodies) {
+        each_block(span, bodies,
+                   [](const Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras) CAROM_INLINE_LAMBDA {
+                       detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
+                   });
+    }
+
+    static void look_ahead(const BlockSpan<D>& span, const RecordView<D>& bodies, float h) {
+        Rows* rows = reinterpret_cast<Rows*>(span.rows);
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            rows[k].lead = F(0);
+            if (!any(is_in_flight(rows[k]))) continue;
+            const Body<D, F> a = gather<F>(bodies, span.a + k * width),
+                             b = gather<F>(bodies, span.b + k * width);
+            detail::look_ahead(rows[k], Vec<D, F>(b.motion.v - a.motion.v),
+                               Vec<D, F>(b.motion.moved - a.motion.moved), F(h));
+        }
+    }
+
+    template <bool biased, bool friction, bool tallied>
+    static void solve(const BlockSpan<D>& span, const RecordView<D>& bodies, const SubStep<float>& step) {
+        const SubStep<F> sub = widen(step);
+        each_block(span, bodies,
+                   [&](Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras) CAROM_INLINE_LAMBDA {
+                       if constexpr (tallied) detail::tally(rows);
+                       solve_normals<biased>(rows, a.motion, b.motion, a.weight, b.weight, sub, extras);
+                       if constexpr (friction)
+                           solve_friction(rows, a.motion, b.motion, a.weight, b.weight, extras);
+                   });
+    }
+
+    static void tally(const BlockSpan<D>& span) {
+        Rows* rows = reinterpret_cast<Rows*>(span.rows);
+        for (std::size_t k = 0; k < span.blocks; ++k) detail::tally(rows[k]);
+    }
+
+    /// `work(body, drive)` for each block of bodies.
+    template <class Work>
+    CAROM_INLINE static void each_body(const BodySpan<D>& span, bool velocities, bool ways, Work work) {
+        Drive<D, F>* drives = reinterpret_cast<Drive<D, F>*>(span.drives);
+        std::uint32_t slots[width];
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            for (int lane = 0; lane < width; ++lane)
+                slots[lane] = static_cast<std::uint32_t>(k * width + lane);
+            Body<D, F> body = gather<F>(span.view, slots);
+            work(body.motion, drives[k]);
+            if (velocities) scatter_velocity(span.view, slots, body, false);
+            if (ways) scatter_way(span.view, slots, body);
+        }
+    }
+
+    static void begin_warm(const BodySpan<D>& span, float h) {
+        each_body(span, true, true, [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
+            detail::begin_warm(m, d, F(h));
+            m.v = d.change;
+            m.moved = d.acceleration;
+        });
+    }
+
+    static void begin(const BodySpan<D>& span, float) {
+        each_body(span, true, true, [](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
+            m = {d.start, d.start_spin, {}, {}};
+        });
+    }
+
+    static void integrate_velocities(const BodySpan<D>& span, float h) {
+        each_body(span, true, false, [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
+            integrate_velocity(m, d, F(h));
+        });
+    }
+
+    static void integrate_positions(const BodySpan<D>& span, float h) {
+        each_body(span, false, true,
+                  [h](Motion<D, F>& m, Drive<D, F>&) CAROM_INLINE_LAMBDA { integrate_position(m, F(h)); });
+    }
+
+    static void finish(const BodySpan<D>& span, float h) {
+        each_body(span, false, true,
+                  [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA { detail::finish(m, d, F(h)); });
+    }
+
+    static void finish_and_integrate_velocities(const BodySpan<D>& span, float h) {
+        each_body(span, true, true, [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
+            detail::finish(m, d, F(h));
+            integrate_velocity(m, d, F(h));
+        });
+    }
+
+    static constexpr Passes<D> all{width,
+                                   load,
+                                   warm_start,
+                                   look_ahead,
+                                   solve<true, false, false>,
+                                   solve<true, false, true>,
+                                   solve<true, true, false>,
+                                   solve<false, true, false>,
+                                   tally,
+                                   begin_warm,
+                                   begin,
+                                   integrate_velocities,
+                                   integrate_positions,
+                                   finish,
+                                   finish_and_integrate_velocities};
+};
+
+}  // namespace carom::detail

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "solver/rows.hpp"
+
+/// What the rows of a contact need beside what the narrow phase found: effective masses and the patch of
+/// friction. For any lane type, like solver/rows.hpp.
+namespace carom::detail {
+
+template <class F>
+CAROM_INLINE F inverse_or_zero(F k) {
+    const auto some = k > F(0);
+    return select(some, F(1) / select(some, k, F(1)), F(0));
+}
+template <class F>
+CAROM_INLINE Symmetric3<F> inverse_or_zero(const Symmetric3<F>& k) {
+    return adjugate(k) * inverse_or_zero(determinant(k));
+}
+
+/// The patch of friction lies in the middle of the points that are used.
+template <int D, class F>
+CAROM_INLINE void place_patch(ContactRows<D, F>& c) {
+    F count = F(0);
+    Vec<D, F> sum_a{}, sum_b{};
+    for (const NormalRow<D, F>& p : c.points) {
+        const F used = select(p.mass > F(0), F(1), F(0));
+        count = count + used;
+        sum_a += used * p.arm_a;
+        sum_b += used * p.arm_b;
+    }
+    const F share = inverse_or_zero(count);
+    c.arm_a = share * sum_a;
+    c.arm_b = share * sum_b;
+}
+
+/// Inverse of the effective masses of the patch, which is symmetric, between its two tangents.
+template <class F>
+CAROM_INLINE void weigh_patch(ContactRows<2, F>& c, const Weight<2, F>& a, const Weight<2, F>& b) {
+    c.patch_mass[0] = inverse_or_zero(compliance(c.tangent, c.arm_a, c.arm_b, a, b));
+}
+template <class F>
+CAROM_INLINE void weigh_patch(ContactRows<3, F>& c, const Weight<3, F>& a, const Weight<3, F>& b) {
+    const auto [t1, t2] = tangents_of(c);
+    const Vec<3, F> a1 = cross(c.arm_a, t1), a2 = cross(c.arm_a, t2);
+    const Vec<3, F> b1 = cross(c.arm_b, t1), b2 = cross(c.arm_b, t2);
+    const Vec<3, F> mass = a.mass + b.mass, turn_a1 = a.inertia * a1, turn_b1 = b.inertia * b1;
+    const F k11 = dot(t1, each(mass, t1)) + dot(a1, turn_a1) + dot(b1, turn_b1);
+    const F k12 = dot(t2, each(mass, t1)) + dot(a2, turn_a1) + dot(b2, turn_b1);
+    const F k22 = dot(t2, each(mass, t2)) + dot(a2, a.inertia * a2) + dot(b2, b.inertia * b2);
+    const F k = inverse_or_zero(k11 * k22 - k12 * k12);
+    c.patch_mass = {k22 * k, -k12 * k, k11 * k};
+    c.twist_mass = inverse_or_zero(dot(c.normal, (a.inertia + b.inertia) * c.normal));
+    for (NormalRow<3, F>& p : c.points) {
+        const Vec<3, F> arm = p.arm_a - c.arm_a;
+        p.lever = select(p.mass > F(0), square_root(dot(arm, arm)), F(0));
+    }
+}
+
+/// On entry the mass of a point is positive where the point is used and zero where not.
+template <int D, class F>
+CAROM_INLINE void weigh_rows(ContactRows<D, F>& c, const Weight<D, F>& a, const Weight<D, F>& b,
+                             Extras extras) {
+    place_patch(c);
+    weigh_patch(c, a, b);
+    for (NormalRow<D, F>& p : c.points)
+        p.mass = select(p.mass > F(0), inverse_or_zero(compliance(c.normal, p.arm_a, p.arm_b, a, b)), F(0));
+    const auto moves = [](const Weight<D, F>& w) {
+        return maximum(w.mass[0], maximum(w.mass[1], w.mass[D - 1]));
+    };
+    c.firm = select(minimum(moves(a), moves(b)) > F(0), F(0), F(1));
+    if (extras.rolling) {
+        const Inertia<D, F> mass = inverse_or_zero(a.inertia + b.inertia);
+        c.rolling_mass = mass * select(c.rolling > F(0), F(1), F(0));
+    }
+}
+
+/// In a sub-step of length h a gap s changes by h v + ½ h² a, with v the speed at its end and a = −Δv/h (see
+/// `finish`): with v alone, bodies in flight would seem to meet too early. The lead −½ h Δv is what the
+/// steady change of the relative speed makes, and no more than what the outer forces alone would: none at
+/// rest. `change` is Δv of b against a in the sub-step before, `acceleration` what outer forces make of it.
+template <int D, class F>
+CAROM_INLINE void look_ahead(ContactRows<D, F>& c, const Vec<D, F>& change, const Vec<D, F>& acceleration,
+                             F h) {
+    const F outer = F(-0.5f) * h * h * dot(c.normal, acceleration);
+    const F steady = F(-0.5f) * h * dot(c.normal, change);
+    c.lead = select(is_in_flight(c), maximum(F(0), minimum(outer, steady)), F(0));
+}
+
+/// Are all points that are used open?
+template <int D, class F>
+CAROM_INLINE auto is_in_flight(const ContactRows<D, F>& c) {
+    constexpr float touching = 1e-5f;  // m: nearer things are not in flight
+    F nearest = F(1);
+    for (const NormalRow<D, F>& p : c.points)
+        nearest = minimum(nearest, select(p.mass > F(0), p.separation, F(1)));
+    return nearest > F(touching);
+}
+
+/// Adds what the rows hold now to the sums over the sub-steps.
+template <int D, class F>
+CAROM_INLINE void tally(ContactRows<D, F>& c) {
+    for (NormalRow<D, F>& p : c.points) p.total_impulse = p.total_impulse + p.impulse;
+    for (int k = 0; k < D - 1; ++k) c.total_friction[k] = c.total_friction[k] + c.friction_impulse[k];
+}
+
+}  // namespace carom::detail

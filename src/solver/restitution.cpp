@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/solver.hpp"
+
+/// Restitution, once at the end of the step, for the points that were hit.
+namespace carom::detail {
+
+/// Completes `impacts_` by how the points move at the start of the step.
+template <int D>
+void Solver<D>::find_impacts(const SolverInput<D>&) {
+    for (Impact& i : impacts_) {
+        ContactBlocks<D>& blocks = sections_[i.section].blocks;
+        const Rows rows = blocks.rows().get(i.place);
+        const std::uint32_t a = blocks.a(i.place), b = blocks.b(i.place);
+        const Drive<D, float> drive_a = drives_.get(a), drive_b = drives_.get(b);
+        const Vec<D, float>& n = rows.normal;
+        // Steady constraints count beside the outer forces (a ball that falls on a box at rest), but what
+        // they do now may be the echo of a blow: no more than the outer forces could make is believed.
+        const float most = std::fabs(dot(n, drive_a.acceleration)) + std::fabs(dot(n, drive_b.acceleration));
+        const float steady = dot(n, drive_b.change - drive_a.change) * (1 / h_);
+        i.acceleration = std::clamp(steady, -most, most);
+        const NormalRow<D, float>& p = rows.points[i.point];
+        i.speed = dot(n, relative_velocity(gather<float>(view_, &a).motion, gather<float>(view_, &b).motion,
+                                           p.arm_a, p.arm_b));
+    }
+}
+
+/// Every point that was hit is given the speed and the place that it has after a bounce at the time of its
+/// impact. Points of one body share its motion, so a few passes, to and fro, bring them to agree.
+template <int D>
+void Solver<D>::bounce(const SolverInput<D>& input) {
+    constexpr int passes = 8;
+    const Rows model;
+    for (int pass = 0; pass < passes; ++pass) {
+        for (std::size_t k = 0; k < impacts_.size(); ++k) {
+            const Impact& i = impacts_[pass % 2 == 0 ? k : impacts_.size() - 1 - k];
+            const LaneStore<Rows>& rows = sections_[i.section].blocks.rows();
+            const NormalRow<D, float>& p = model.points[i.point];
+            if (rows.at(i.place, field_of(model, p.total_impulse)) == 0) continue;
+            const float separation = rows.at(i.place, field_of(model, p.separation));
+            const Rebound r = rebound(i.restitution, separation, i.speed, i.acceleration, input.step,
+                                      input.restitution_threshold);
+            if (r.bounces) bounce(i, r);
+        }
+    }
+}
+
+template <int D>
+void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
+    ContactBlocks<D>& blocks = sections_[impact.section].blocks;
+    Rows rows = blocks.rows().get(impact.place);
+    NormalRow<D, float>& p = rows.points[impact.point];
+    const std::uint32_t slot_a = blocks.a(impact.place), slot_b = blocks.b(impact.place);
+    Body<D, float> body_a = gather<float>(view_, &slot_a), body_b = gather<float>(view_, &slot_b);
+    Motion<D, float>&a = body_a.motion, &b = body_b.motion;
+    const Weight<D, float>&wa = body_a.weight, &wb = body_b.weight;
+
+    const float speed = dot(rows.normal, relative_velocity(a, b, p.arm_a, p.arm_b));
+    const float blow = std::max(p.mass * (static_cast<float>(rebound.speed) - speed), -p.total_impulse);
+    p.total_impulse += blow;
+    p.impulse = 0;  // the blow is over: nothing of it belongs into the next step
+    push(a, b, wa, wb, p.arm_a, p.arm_b, blow * rows.normal);
+
+    // The place: the same impulse arithmetic on displacements instead of velocities.
+    const float lack = static_cast<float>(rebound.gap) - gap(rows, p, a, b);
+    if (lack > 0) {
+        Motion<D, float> shift_a{}, shift_b{};
+        push(shift_a, shift_b, wa, wb, p.arm_a, p.arm_b, p.mass * lack * rows.normal);
+        a.moved += shift_a.v;
+        a.turned = a.turned + shift_a.w;
+        b.moved += shift_b.v;
+        b.turned = b.turned + shift_b.w;
+    }
+    blocks.rows().set(impact.place, rows);
+    for (const auto& [slot, body] : {std::pair{slot_a, body_a}, std::pair{slot_b, body_b}}) {
+        if (slot < view_.first_movable) continue;
+        scatter_velocity(view_, &slot, body, false);
+        scatter_way(view_, &slot, body);
+    }
+}
+
+#define CAROM_INSTANTIATE(D)                                      \
+    template void Solver<D>::find_impacts(const SolverInput<D>&); \
+    template void Solver<D>::bounce(const SolverInput<D>&);
+CAROM_INSTANTIATE(2)
+CAROM_INSTANTIATE(3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom::detail

@@ -1,0 +1,85 @@
+#include "solver/colours.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "collision/random.hpp"
+
+namespace carom::detail {
+namespace {
+
+using test::Random;
+
+std::vector<SlotPair> random_pairs(Random& random, int contacts, std::uint32_t slots,
+                                   std::uint32_t first_movable) {
+    std::vector<SlotPair> pairs;
+    while (static_cast<int>(pairs.size()) < contacts) {
+        const auto draw = [&] { return static_cast<std::uint32_t>(random.between(0, slots - 0.001)); };
+        const SlotPair p{draw(), draw()};
+        if (p.a != p.b && (p.a >= first_movable || p.b >= first_movable)) pairs.push_back(p);
+    }
+    return pairs;
+}
+
+TEST(Colours, NoTwoContactsOfAColourShareABodyThatCanBePushed) {
+    Random random(1);
+    for (const std::uint32_t first_movable : {1u, 5u}) {
+        const std::vector<SlotPair> pairs = random_pairs(random, 2000, 300, first_movable);
+        Colours colours;
+        colours.deal(pairs, first_movable, 300);
+        std::set<std::pair<int, std::uint32_t>> seen;
+        std::vector<std::size_t> sizes(Colours::count + 1);
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            ++sizes[colours[i]];
+            if (colours[i] == Colours::overflow) continue;
+            for (const std::uint32_t slot : {pairs[i].a, pairs[i].b})
+                EXPECT_TRUE(slot < first_movable || seen.insert({colours[i], slot}).second) << i;
+        }
+        for (int c = 0; c <= Colours::count; ++c) EXPECT_EQ(colours.size(c), sizes[c]);
+    }
+}
+
+TEST(Colours, ContactsWithFixedBodiesComeLast) {
+    Random random(2);
+    const std::vector<SlotPair> pairs = random_pairs(random, 500, 200, 20);
+    Colours colours;
+    colours.deal(pairs, 20, 200);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const bool fixed = pairs[i].a < 20 || pairs[i].b < 20;
+        EXPECT_EQ(colours[i] >= Colours::between_movable, fixed);
+    }
+}
+
+/// A body with more contacts than there are colours, as the drum of a tumbler has.
+TEST(Colours, WhatFindsNoColourOverflows) {
+    std::vector<SlotPair> pairs;
+    for (std::uint32_t i = 0; i < 100; ++i) pairs.push_back({1, 2 + i});
+    Colours colours;
+    colours.deal(pairs, 1, 200);
+    EXPECT_EQ(colours.size(Colours::overflow), 100 - static_cast<std::size_t>(Colours::between_movable));
+    for (int c = 0; c < Colours::between_movable; ++c) EXPECT_EQ(colours.size(c), 1u);
+    EXPECT_EQ(colours[99], Colours::overflow);
+}
+
+/// A row of boxes needs two colours, and a grid of them four: greedy colouring in the order of creation finds
+/// nearly as few.
+TEST(Colours, FewColoursAreUsed) {
+    std::vector<SlotPair> pairs;
+    constexpr std::uint32_t n = 30;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        for (std::uint32_t j = 0; j < n; ++j) {
+            const std::uint32_t slot = 1 + i * n + j;
+            if (j > 0) pairs.push_back({slot - 1, slot});
+            if (i > 0) pairs.push_back({slot - n, slot});
+        }
+    }
+    Colours colours;
+    colours.deal(pairs, 1, 1 + n * n);
+    int used = 0;
+    for (int c = 0; c <= Colours::count; ++c) used += colours.size(c) > 0;
+    EXPECT_LE(used, 5);
+}
+
+}  // namespace
+}  // namespace carom::detail
