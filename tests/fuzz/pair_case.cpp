@@ -114,10 +114,11 @@ template <int D>
 void PairCase<D>::check_closest_points() {
     const auto closest = closest_points<D>(a_.solid, a_.placed, b_.solid, b_.placed);
     const double distance = std::max(found_.distance, 0.0);
-    expect(std::fabs(closest.distance - distance) <= tolerance_, "closest distance", closest.distance,
-           distance);
-    expect(a_.height(closest.on_a) <= tolerance_, "point of a above its surface", a_.height(closest.on_a), 0);
-    expect(b_.height(closest.on_b) <= tolerance_, "point of b above its surface", b_.height(closest.on_b), 0);
+    // On rims that are thousands of times larger than the other shape it is right to 1e-8 of them.
+    const double vague = tolerance_ + 2e-8 * big_;
+    expect(std::fabs(closest.distance - distance) <= vague, "closest distance", closest.distance, distance);
+    expect(a_.height(closest.on_a) <= vague, "point of a above its surface", a_.height(closest.on_a), 0);
+    expect(b_.height(closest.on_b) <= vague, "point of b above its surface", b_.height(closest.on_b), 0);
 }
 
 /// No axis may show a wider gap.
@@ -138,14 +139,17 @@ void PairCase<D>::check_manifold() {
     const double reach = random_.below(2) ? 0 : 0.05 * small_;
     const auto m = collide<D>(a_.solid, a_.placed, b_.solid, b_.placed, reach);
     const auto swapped = collide<D>(b_.solid, b_.placed, a_.solid, a_.placed, reach);
-    // What the engine prefers for steadiness may be this much worse than the best.
-    const double slack = 0.11 * std::fabs(found_.distance) + 1e-4 * small_ + 1e-5 * big_ + tolerance_;
+    // What the engine prefers for steadiness may be this much worse than the best; in the plane, edges within
+    // 11° of parallel meet as edges even where their round ends are nearest.
+    const double slack = 0.11 * std::fabs(found_.distance) + 1e-4 * small_ + 1e-5 * big_ + tolerance_ +
+                         (D == 2 ? 0.03 * small_ : 0.0);
     for (const auto& manifold : {m, swapped}) {
         if (manifold.count == 0) {
             expect(found_.distance > reach - tolerance_, "no contact", found_.distance, reach);
             continue;
         }
-        expect(found_.distance <= reach + 2e-5 * small_ + tolerance_, "contact", found_.distance, reach);
+        expect(found_.distance <= reach + 2e-5 * small_ + 1e-5 * big_ + tolerance_, "contact",
+               found_.distance, reach);
         expect(std::fabs(length(manifold.normal) - 1) < 1e-9, "length of the normal", length(manifold.normal),
                1);
         double least = 1e300;
@@ -158,7 +162,7 @@ void PairCase<D>::check_manifold() {
         }
         expect(std::fabs(least - found_.distance) <= slack, "deepest point", least, found_.distance);
     }
-    const double doubt = 2e-5 * small_ + tolerance_;
+    const double doubt = 2e-5 * small_ + 1e-5 * big_ + tolerance_;
     if (std::fabs(found_.distance - reach) > doubt) {
         expect((m.count > 0) == (swapped.count > 0), "contact with shapes exchanged", m.count, swapped.count);
     }
