@@ -1,6 +1,7 @@
 #include "collision/cast.hpp"
 
 #include "collision/closest.hpp"
+#include "collision/ground.hpp"
 #include "collision/manifold.hpp"
 
 namespace carom::detail {
@@ -23,6 +24,16 @@ CastHit<D> touching(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_
 template <int D>
 std::optional<CastHit<D>> cast_shape(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a,
                                      const Vec<D>& translation) {
+    if (a.kind == ShapeKind::terrain) return cast_at_ground(a, b, b_in_a, translation);
+    if (b.kind == ShapeKind::terrain) {
+        // The other moves the other way; where they touch moves along.
+        auto hit = cast_at_ground(b, a, inverse(b_in_a), unrotate(b_in_a.rotation, -translation));
+        if (hit) {
+            hit->point = apply(b_in_a, hit->point) + hit->fraction * translation;
+            hit->normal = -rotate(b_in_a.rotation, hit->normal);
+        }
+        return hit;
+    }
     constexpr int most_steps = 200;
     const double tolerance = 1e-10 * (size_of(a) + size_of(b));
     ClosestPoints<D> found = closest_points(a, b, b_in_a);

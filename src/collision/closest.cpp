@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/gjk.hpp"
+#include "collision/ground.hpp"
 #include "collision/manifold.hpp"
 
 namespace carom::detail {
@@ -51,6 +52,8 @@ template <int D>
 ClosestPoints<D> closest_points(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a) {
     const bool a_plane = a.kind == ShapeKind::plane, b_plane = b.kind == ShapeKind::plane;
     if (a_plane && b_plane) return between_planes(a, b, b_in_a);
+    if (a.kind == ShapeKind::terrain) return closest_to_ground(a, b, b_in_a);
+    if (b.kind == ShapeKind::terrain) return exchanged(closest_to_ground(b, a, inverse(b_in_a)), b_in_a);
     if (a_plane) return from_plane(a, b, b_in_a);
     if (b_plane) return exchanged(from_plane(b, a, inverse(b_in_a)), b_in_a);
 
@@ -79,7 +82,8 @@ double core_reach(const Shape<D>& shape, const Vec<D>& center) {
         case ShapeKind::capsule:
             return std::max(length(shape.a - center), length(shape.b - center));
         case ShapeKind::box:
-        case ShapeKind::hull: {
+        case ShapeKind::hull:
+        case ShapeKind::facet: {
             double square = 0;
             for (const Vec<D>& vertex : shape.core->vertices)
                 square = std::max(square, length_squared(vertex - center));
@@ -90,6 +94,7 @@ double core_reach(const Shape<D>& shape, const Vec<D>& center) {
             return length(shape.a - center) +
                    std::sqrt(shape.radius * shape.radius + shape.half_height * shape.half_height);
         case ShapeKind::plane:
+        case ShapeKind::terrain:
             break;
     }
     return 0;
@@ -97,7 +102,7 @@ double core_reach(const Shape<D>& shape, const Vec<D>& center) {
 
 template <int D>
 double size_of(const Shape<D>& shape) {
-    if (shape.kind == ShapeKind::plane) return 0;
+    if (shape.kind == ShapeKind::plane || shape.kind == ShapeKind::terrain) return 0;
     Vec<D> along{};
     along.x = 1;
     return core_reach(shape, core_support(shape, along)) + core_radius(shape);

@@ -18,7 +18,7 @@ bool overlap_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_
 template <int D>
 double core_reach(const Shape<D>& shape, const Vec<D>& center);
 
-/// A length of the order of the shape's size, for tolerances; zero for a plane.
+/// A length of the order of the shape's size, for tolerances; zero for planes and terrain.
 template <int D>
 double size_of(const Shape<D>& shape);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace carom::detail {
 
@@ -129,6 +130,25 @@ Simplex<D> reduce(const Simplex<D>& whole) {
     return best;
 }
 
+/// Of a simplex that holds the origin, itself or the face whose weights come nearest to it: those of a
+/// simplex that is all but flat are mostly rounding.
+template <int D>
+Simplex<D> surest_weights(const Simplex<D>& whole) {
+    const auto miss = [](const Simplex<D>& s) {
+        Vec<D> sum{};
+        for (int i = 0; i < s.count; ++i) sum += s.weights[i] * s[i];
+        return length_squared(sum);
+    };
+    Simplex<D> best = whole;
+    for (int left_out = 0; left_out < whole.count; ++left_out) {
+        Simplex<D> face;
+        for (int i = 0; i < whole.count; ++i)
+            if (i != left_out) face.vertices[face.count++] = whole.vertices[i];
+        if (solve_whole(face) && miss(face) < miss(best)) best = face;
+    }
+    return best;
+}
+
 }  // namespace
 
 template <int D>
@@ -152,6 +172,9 @@ CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transf
     simplex = reduce(simplex);
     double extent = length(simplex[0]);
     double distance = extent;
+    Simplex<D> nearest;
+    double nearest_distance = std::numeric_limits<double>::infinity();
+    int restarts = 3;
     for (int step = 0; step < most_steps && simplex.count <= D && distance > touching * extent; ++step) {
         const Vec<D> axis = simplex.closest / -distance;
         const SimplexVertex<D> next = difference_support(a, b, b_in_a, axis);
@@ -162,15 +185,34 @@ CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transf
         larger.vertices[larger.count++] = next;
         larger = reduce(larger);
         const double nearer = larger.count > D ? 0 : length(larger.closest);
-        if (!(nearer < distance)) break;
+        if (!(nearer < distance)) {
+            // Rounding holds it up, mostly at needles of points on a rim. From the newest point alone it may
+            // find another way; the nearest of all is kept.
+            if (distance < nearest_distance) {
+                nearest = simplex;
+                nearest_distance = distance;
+            }
+            if (restarts-- == 0) break;
+            larger = {};
+            larger.vertices[larger.count++] = next;
+            larger = reduce(larger);
+            simplex = larger;
+            distance = length(simplex.closest);
+            continue;
+        }
         simplex = larger;
         distance = nearer;
     }
 
+    if (simplex.count <= D && nearest_distance < distance) {
+        simplex = nearest;
+        distance = nearest_distance;
+    }
     CoreDistance<D> result;
-    for (int i = 0; i < simplex.count; ++i) {
-        result.on_a += simplex.weights[i] * simplex.vertices[i].on_a;
-        result.on_b += simplex.weights[i] * simplex.vertices[i].on_b;
+    const Simplex<D> weighted = simplex.count > D ? surest_weights(simplex) : simplex;
+    for (int i = 0; i < weighted.count; ++i) {
+        result.on_a += weighted.weights[i] * weighted.vertices[i].on_a;
+        result.on_b += weighted.weights[i] * weighted.vertices[i].on_b;
     }
     result.overlap = simplex.count > D || distance <= touching * extent;
     if (!result.overlap) {

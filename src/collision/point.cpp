@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/gjk.hpp"
+#include "collision/ground.hpp"
 
 namespace carom::detail {
 
@@ -78,9 +79,12 @@ Vec<D> nearest_in_core(const Shape<D>& shape, const Vec<D>& p) {
             return p - std::max(dot(shape.a, p) - shape.offset, 0.0) * shape.a;
         case ShapeKind::cylinder:
         case ShapeKind::cone:
+            if constexpr (D == 3) return nearest_in_revolved(shape, p);
+            break;
+        case ShapeKind::terrain:
+        case ShapeKind::facet:
             break;
     }
-    if constexpr (D == 3) return nearest_in_revolved(shape, p);
     return p;
 }
 
@@ -88,6 +92,7 @@ Vec<D> nearest_in_core(const Shape<D>& shape, const Vec<D>& p) {
 
 template <int D>
 Vec<D> nearest_point(const Shape<D>& shape, const Vec<D>& point) {
+    if (shape.kind == ShapeKind::terrain) return nearest_on_ground(shape, point);
     const Vec<D> in_core = nearest_in_core(shape, point), way = point - in_core;
     const double square = length_squared(way), radius = core_radius(shape);
     if (square <= radius * radius) return point;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/ground.hpp"
 #include "collision/point.hpp"
 
 // A line and a convex solid have a stretch in common, or nothing. Each routine finds that stretch; a shape
@@ -263,6 +264,9 @@ Stretch<D> through(const Line<D>& line, const Shape<D>& shape) {
         case ShapeKind::cone:
             if constexpr (D == 3) return through_cone(line, shape);
             break;
+        case ShapeKind::terrain:
+        case ShapeKind::facet:
+            break;
     }
     return nothing<D>;
 }
@@ -278,6 +282,7 @@ Vec<D> point_of(const Shape<D>& shape) {
 
 template <int D>
 std::optional<CastHit<D>> cast_ray(const Shape<D>& shape, const Vec<D>& origin, const Vec<D>& translation) {
+    if (shape.kind == ShapeKind::terrain) return cast_ray_at_ground(shape, origin, translation);
     const double whole = length(translation);
     if (!(whole > 0)) {
         if (!holds(shape, origin)) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include "collision/cast.hpp"
 #include "collision/closest.hpp"
+#include "collision/ground.hpp"
 #include "collision/manifold.hpp"
 #include "math/dim.hpp"
 
@@ -61,6 +62,12 @@ double lowest_between(double first, double last, double whole, double curvature)
 template <int D>
 std::optional<CastHit<D>> time_of_impact(const Shape<D>& a, const Sweep<D>& a_sweep, const Shape<D>& b,
                                          const Sweep<D>& b_sweep, double tolerance) {
+    if (b.kind == ShapeKind::terrain) return impact_with_ground(b, b_sweep, a, a_sweep, tolerance);
+    if (a.kind == ShapeKind::terrain) {
+        auto hit = impact_with_ground(a, a_sweep, b, b_sweep, tolerance);
+        if (hit) hit->normal = -hit->normal;
+        return hit;
+    }
     // Below this the distance of two shapes is not known well enough.
     tolerance = std::max(tolerance, 1e-9 * (size_of(a) + size_of(b)));
     const Pair<D> pair{a, a_sweep, b, b_sweep};

@@ -149,22 +149,22 @@ template <class Visitor>
 double Tree<D>::cast(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half, double limit,
                      Visitor&& visit) const {
     const SlabTest<D> slabs(origin, translation, half);
-    struct Entry {
+    struct Reached {
         std::int32_t node;
         double enter;
     };
-    WalkStack<Entry> stack;
+    WalkStack<Reached> stack;
     if (root_ != none) stack.push({root_, slabs.enter(nodes_[root_].box, limit)});
     while (!stack.empty()) {
-        Entry entry = stack.pop();
+        Reached entry = stack.pop();
         while (entry.enter <= limit) {
             const Node& node = nodes_[entry.node];
             if (node.leaf()) {
                 limit = visit(std::uint32_t(node.child[1]), limit);
                 break;
             }
-            Entry near{node.child[0], slabs.enter(nodes_[node.child[0]].box, limit)};
-            Entry far{node.child[1], slabs.enter(nodes_[node.child[1]].box, limit)};
+            Reached near{node.child[0], slabs.enter(nodes_[node.child[0]].box, limit)};
+            Reached far{node.child[1], slabs.enter(nodes_[node.child[1]].box, limit)};
             if (far.enter < near.enter) std::swap(near, far);
             if (far.enter <= limit) stack.push(far);
             entry = near;
@@ -176,24 +176,24 @@ double Tree<D>::cast(const Vec<D>& origin, const Vec<D>& translation, const Vec<
 template <int D>
 template <class Visitor>
 double Tree<D>::approach(const Vec<D>& point, double limit, Visitor&& visit) const {
-    struct Entry {
+    struct Reached {
         std::int32_t node;
         double square;
     };
     const auto entry_of = [&](std::int32_t node) {
-        return Entry{node, distance_squared(nodes_[node].box, point)};
+        return Reached{node, distance_squared(nodes_[node].box, point)};
     };
-    WalkStack<Entry> stack;
+    WalkStack<Reached> stack;
     if (root_ != none) stack.push(entry_of(root_));
     while (!stack.empty()) {
-        const Entry entry = stack.pop();
+        const Reached entry = stack.pop();
         if (!(entry.square <= limit)) continue;
         const Node& node = nodes_[entry.node];
         if (node.leaf()) {
             limit = visit(std::uint32_t(node.child[1]), limit);
             continue;
         }
-        Entry near = entry_of(node.child[0]), far = entry_of(node.child[1]);
+        Reached near = entry_of(node.child[0]), far = entry_of(node.child[1]);
         if (far.square < near.square) std::swap(near, far);
         stack.push(far);
         stack.push(near);

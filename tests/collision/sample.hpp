@@ -15,12 +15,22 @@ struct Sample {
     Transform<D> placed;
     Vec<D> base;  ///< about where it is
     std::function<double(const Vec<D>& from_base)> height_from_base;
+    std::function<double(const Vec<D>& direction)> reach_from_base;
     double size;
     double vagueness;  ///< how far the oracle and the shape may differ
     bool plane;
+    Vec<D> shift{};  ///< that it was moved by
 
     /// Signed distance of a point from the surface, negative inside.
-    double height(const Vec<D>& point) const { return height_from_base(point - base); }
+    double height(const Vec<D>& point) const { return height_from_base(point - base - shift); }
+    /// How far it reaches from the base along the unit vector.
+    double reach(const Vec<D>& direction) const { return reach_from_base(direction) + dot(direction, shift); }
+    /// Moves the shape.
+    void move(const Vec<D>& way) {
+        const Vec<D> from = placed.position;
+        placed.position += way;
+        shift += placed.position - from;
+    }
 };
 
 template <int D>
@@ -28,10 +38,13 @@ constexpr int sample_kinds = D == 2 ? 5 : space::kinds;
 template <int D>
 constexpr int plane_kind = 4;
 
-/// A shape of a kind, 0 … sample_kinds − 1, about as large as `size` and that near to `base`.
+/// A shape of a kind, 0 … sample_kinds − 1, about as large as `size` and that near to `base`; turned at
+/// random unless told how.
 template <int D>
-Sample<D> random_sample(int kind, double size, Random& random, const Vec<D>& base = {}) {
-    const Transform<D> here = random.placement<D>(size);
+Sample<D> random_sample(int kind, double size, Random& random, const Vec<D>& base = {},
+                        const std::optional<Rotation<D>>& turned = {}) {
+    Transform<D> here = random.placement<D>(size);
+    if (turned) here.rotation = *turned;
     const Transform<D> there{base + here.position, here.rotation};
     const bool plane = kind == plane_kind<D>;
     // As the position is rounded far away, so must be the oracle's.
@@ -43,20 +56,34 @@ Sample<D> random_sample(int kind, double size, Random& random, const Vec<D>& bas
                     there,
                     base,
                     [=](const Vec2& p) { return dot(half.normal, apply_inverse(near, p)) - half.offset; },
+                    [=](const Vec2& d) {
+                        const Vec2 normal = rotate(near.rotation, half.normal);
+                        return length(d - normal) < 1e-7 ? half.offset + dot(d, near.position) : 1e300;
+                    },
                     size,
                     0,
                     plane};
         }
         const ShapeDefinition2 shape = random_shape(static_cast<Kind>(kind), random, 0.5 * size);
         const auto cloud = std::make_shared<Cloud>(shape, near);
-        return {shape, there,       base, [=](const Vec2& p) { return signed_distance(*cloud, p); },
-                size,  1e-9 * size, plane};
+        return {shape,
+                there,
+                base,
+                [=](const Vec2& p) { return signed_distance(*cloud, p); },
+                [=](const Vec2& d) { return cloud->highest(d) + cloud->radius; },
+                size,
+                1e-9 * size,
+                plane};
     } else {
         const Geometry<3> geometry = space::random_geometry(static_cast<space::Kind>(kind), size, random);
         const auto body = std::make_shared<space::Body3>(geometry, near);
-        return {geometry, there,
-                base,     [=](const Vec3& p) { return body->height(p); },
-                size,     1e-9 * size + body->vagueness(),
+        return {geometry,
+                there,
+                base,
+                [=](const Vec3& p) { return body->height(p); },
+                [=](const Vec3& d) { return body->reach(d); },
+                size,
+                1e-9 * size + body->vagueness(),
                 plane};
     }
 }

@@ -78,7 +78,7 @@ World<D> any_world(Dice& dice, const Vec<D>& base, int bodies) {
             ShapeDefinition<D> shape = shape_of<D>(any_geometry<D>(dice));
             shape.center = dice.in_cube<D>(1);
             shape.rotation = dice.rotation<D>();
-            shape.sensor = dice.below(5) == 0;
+            shape.sensor = dice.below(5) == 0 && !body.shapes.empty();
             shape.filter.category = std::uint64_t{1} << dice.below(4);
             shape.filter.mask = dice.below(2) ? ~std::uint64_t{0} : std::uint64_t(dice.below(16));
             body.shapes.push_back(shape);

@@ -80,9 +80,11 @@ void set_apart(Proximity& result, const Closest& closest, const Outline& a, cons
     result.corners = !closest.inside;
     const Vec2 across = result.on_b - result.on_a;
     const double distance = length(across);
-    // Points that touch but for rounding have no direction between them.
-    const Vec2 direction = distance > 1e-13 * extent ? across / distance : fallback_axis;
-    if (closest.inside) {
+    // Points that touch but for rounding have no direction between them, and rounding may have put the one on
+    // an edge beside that which shows the gap.
+    const bool touching = distance <= 1e-13 * extent;
+    const Vec2 direction = touching ? fallback_axis : across / distance;
+    if (closest.inside && !touching) {
         // The normal is known better than the difference of two close points. Only a segment has two sides.
         const Outline& outline = closest.edge_of_a ? a : b;
         const Vec2 normal = outline.normal(closest.edge);

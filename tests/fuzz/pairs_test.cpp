@@ -1,0 +1,53 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <string_view>
+
+#include "fuzz/pair_case.hpp"
+
+// Run with `--count=10000000` for as many placements of each pair, and with `--first=N` to begin at number N.
+
+namespace carom::test {
+namespace {
+
+std::uint64_t first = 0, count = 2000;
+
+template <int D>
+void look_at_pairs() {
+    constexpr int kinds = D == 2 ? 5 : 7, plane = 4, most_faults = 5;
+    for (int a = 0; a < kinds; ++a) {
+        for (int b = a; b < kinds; ++b) {
+            if (a == plane && b == plane) continue;
+            int faults = 0;
+            for (std::uint64_t n = first; n < first + count && faults < most_faults; ++n) {
+                const std::string fault = fault_of_case<D>(a, b, n);
+                if (fault.empty()) continue;
+                ++faults;
+                ADD_FAILURE() << D << "D, kinds " << a << " and " << b << ", number " << n << ":\n" << fault;
+            }
+        }
+    }
+}
+
+TEST(Fuzz, pairs_in_the_plane_agree_with_the_oracles) { look_at_pairs<2>(); }
+TEST(Fuzz, pairs_in_space_agree_with_the_oracles) { look_at_pairs<3>(); }
+
+}  // namespace
+}  // namespace carom::test
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        if (word.starts_with("--count=")) {
+            carom::test::count = std::strtoull(argv[i] + 8, nullptr, 10);
+        } else if (word.starts_with("--first=")) {
+            carom::test::first = std::strtoull(argv[i] + 8, nullptr, 10);
+        } else {
+            std::cerr << "unknown: " << word << "; known are --count=N and --first=N\n";
+            return 2;
+        }
+    }
+    return RUN_ALL_TESTS();
+}
