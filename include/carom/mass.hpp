@@ -19,7 +19,8 @@ using MassProperties2 = MassProperties<2>;
 using MassProperties3 = MassProperties<3>;
 
 /// Mass properties of one shape of uniform density, in the frame of its body, in closed form. A plane has
-/// none (all zero). Throws `Error` for a shape that cannot exist (see `Geometry`).
+/// none (all zero), nor have chains, meshes and height fields, which are not looked at. Throws `Error` for
+/// another shape that cannot exist (see `Geometry`).
 template <int D>
 MassProperties<D> mass_properties(const ShapeDefinition<D>& shape);
 
@@ -28,7 +29,8 @@ MassProperties<D> mass_properties(const ShapeDefinition<D>& shape);
 template <int D>
 MassProperties<D> combine(std::span<const MassProperties<D>> parts);
 
-/// Area (2D, m²) or volume (3D, m³) of a shape, in closed form; zero for a plane.
+/// Area (2D, m²) or volume (3D, m³) of a shape, in closed form; zero for planes, chains, meshes and height
+/// fields.
 template <int D>
 double measure(const Geometry<D>& geometry);
 

@@ -2,13 +2,16 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "carom/body.hpp"
 #include "carom/collide.hpp"
+#include "carom/events.hpp"
 #include "carom/forces.hpp"
+#include "carom/queries.hpp"
 
 namespace carom {
 
@@ -41,6 +44,7 @@ struct WorldDefinition {
     bool sleep = true;                 ///< bodies at rest may fall asleep
     bool continuous = true;            ///< fast bodies do not pass through fixed ones
     double restitution_threshold = 1;  ///< m/s: slower impacts do not bounce; not negative
+    double hit_speed = 1;              ///< m/s: faster impacts are reported as hits; not negative
 };
 
 using WorldDefinition2 = WorldDefinition<2>;
@@ -121,6 +125,11 @@ class World {
     ShapeId<D> add_shape(BodyId<D> body, const ShapeDefinition<D>& definition);
     /// Takes a shape off its body.
     void remove_shape(ShapeId<D> shape);
+    /// Makes the shape another one in its place; the handle stays, and so do impulses where the features are
+    /// the same. Mass properties follow unless they were overridden.
+    void set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition);
+    /// Switches collision between two bodies off (`false`) or on again. Sensors notice them all the same.
+    void set_collision(BodyId<D> a, BodyId<D> b, bool enabled);
     /// Adds a generator of forces.
     ForceId<D> add_force(const ForceDefinition<D>& definition);
     void remove_force(ForceId<D> force);
@@ -191,9 +200,49 @@ class World {
     std::span<const MovedBody<D>> moved_bodies() const;
     /// The contacts of the last step that carry points, in a reproducible order.
     std::vector<Contact<D>> contacts() const;
+    /// What began, ended and hit in the last step.
+    std::span<const ContactBegin<D>> contact_begins() const;
+    std::span<const ContactEnd<D>> contact_ends() const;
+    std::span<const ContactHit<D>> contact_hits() const;
+    std::span<const SensorBegin<D>> sensor_begins() const;
+    std::span<const SensorEnd<D>> sensor_ends() const;
+    /// The shapes that overlapped the sensor at the end of the last step, in the order of their places.
+    std::vector<ShapeId<D>> inside(ShapeId<D> sensor) const;
     /// Bodies whose state turned non-finite in the last step: they were put back to their last finite state
     /// and disabled, and the rest goes on.
     std::span<const BodyId<D>> quarantined() const;
+
+    // Queries see the bodies where they are now. They may run on several threads at once between steps. Where
+    // two shapes are hit at the same time, the one with the lower index counts, so that answers depend on
+    // what is in the world alone. Coordinates lie within ±1e100 m.
+
+    /// The first shape that the ray meets (see `carom::cast_ray`).
+    std::optional<WorldHit<D>> cast_ray(const Ray<D>& ray, const QueryFilter<D>& filter = {}) const;
+    /// Every shape that the ray meets, where it enters it, in the order in which it does.
+    std::vector<WorldHit<D>> cast_ray_all(const Ray<D>& ray, const QueryFilter<D>& filter = {}) const;
+    /// Does the ray meet anything? The fastest of the three.
+    bool cast_ray_any(const Ray<D>& ray, const QueryFilter<D>& filter = {}) const;
+    /// Many rays at once, shared among as many threads as are asked for (1 … 256): `hits[i]` becomes the
+    /// first hit of `rays[i]`. There must be as many `hits` as rays.
+    void cast_rays(std::span<const Ray<D>> rays, std::span<std::optional<WorldHit<D>>> hits,
+                   const QueryFilter<D>& filter = {}, int threads = 1) const;
+    /// The first shape that `solid` touches on its straight way (see `carom::cast_shape`).
+    std::optional<WorldHit<D>> cast_shape(const Solid<D>& solid, const Transform<D>& placed,
+                                          const Vec<D>& translation, const QueryFilter<D>& filter = {}) const;
+    /// Every shape that `solid` touches on its straight way, in the order in which it does.
+    std::vector<WorldHit<D>> cast_shape_all(const Solid<D>& solid, const Transform<D>& placed,
+                                            const Vec<D>& translation,
+                                            const QueryFilter<D>& filter = {}) const;
+    /// The shapes that overlap `solid`, by index.
+    std::vector<ShapeId<D>> overlapping(const Solid<D>& solid, const Transform<D>& placed,
+                                        const QueryFilter<D>& filter = {}) const;
+    /// The shapes whose axis-aligned bounds overlap the box, by index.
+    std::vector<ShapeId<D>> in_box(const Aabb<D>& box, const QueryFilter<D>& filter = {}) const;
+    /// The shapes that hold the point, by index.
+    std::vector<ShapeId<D>> at_point(const Vec<D>& point, const QueryFilter<D>& filter = {}) const;
+    /// The point of any shape that is nearest to `point`, at most `max_distance` (m) away.
+    std::optional<NearestPoint<D>> nearest_point(const Vec<D>& point, double max_distance,
+                                                 const QueryFilter<D>& filter = {}) const;
 
     /// How many of everything there are.
     Counts counts() const;

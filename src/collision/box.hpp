@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "carom/transform.hpp"
 
@@ -44,5 +45,64 @@ constexpr double half_surface(const Aabb<D>& box) {
     else
         return size.x * size.y + size.y * size.z + size.z * size.x;
 }
+
+/// Square of the distance from the point to the box, less what rounding may have added.
+template <int D>
+double distance_squared(const Aabb<D>& box, const Vec<D>& point) {
+    constexpr double rounding = 1e-15;
+    double sum = 0;
+    for (int i = 0; i < D; ++i) {
+        const double outside = std::max(box.lower[i] - point[i], point[i] - box.upper[i]);
+        const double least = std::max(outside - rounding * std::fabs(point[i]), 0.0);
+        sum += least * least;
+    }
+    return (1 - 4 * rounding) * sum;
+}
+
+/// The box grown by what coordinates of its size may be rounded.
+template <int D>
+Aabb<D> grown_by_rounding(Aabb<D> box) {
+    constexpr double rounding = 1e-15;
+    for (int i = 0; i < D; ++i) {
+        box.lower[i] -= rounding * std::fabs(box.lower[i]);
+        box.upper[i] += rounding * std::fabs(box.upper[i]);
+    }
+    return box;
+}
+
+/// When a box that moves in a straight line meets fixed ones. Its half lengths are taken to be larger by what
+/// coordinates of the way's size may be rounded, so that no box is missed that holds a point of the way.
+template <int D>
+class SlabTest {
+  public:
+    SlabTest(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half) {
+        constexpr double rounding = 1e-15, shortest = 1e-250;
+        for (int i = 0; i < D; ++i) {
+            const double margin =
+                half[i] + rounding * (std::fabs(origin[i]) + std::fabs(translation[i]) + half[i]);
+            to_lower_[i] = origin[i] + margin;
+            to_upper_[i] = origin[i] - margin;
+            // Along an axis that it does not move along, it meets a slab at all times or never.
+            per_length_[i] = std::fabs(translation[i]) > shortest ? 1 / translation[i] : 1 / shortest;
+        }
+    }
+
+    /// The fraction of the way, at least 0, at which it enters the box; more than `limit` (and than 1) when
+    /// it does not, or later than that.
+    double enter(const Aabb<D>& box, double limit) const {
+        double enter = 0, leave = limit;
+        for (int i = 0; i < D; ++i) {
+            const double a = (box.lower[i] - to_lower_[i]) * per_length_[i];
+            const double b = (box.upper[i] - to_upper_[i]) * per_length_[i];
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+        }
+        return enter <= leave ? enter : 1e300;
+    }
+
+  private:
+    Vec<D> to_lower_, to_upper_;  ///< the places where the moving box's sides would meet at the start
+    Vec<D> per_length_;
+};
 
 }  // namespace carom::detail

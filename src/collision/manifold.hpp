@@ -13,14 +13,14 @@ namespace carom::detail {
 
 /// The contact manifold of two shapes in the frame of a's body: its normal points from a to b, a point lies
 /// midway between the two surfaces, and `separation` is the gap there along the normal. It is empty when the
-/// gap between the shapes is larger than `reach` (m, not negative) and for two planes. The kinds may come in
-/// either order; the feature ids of a pair of shapes are the same in both.
+/// gap between the shapes is larger than `reach` (m, not negative) and for two of plane and terrain. The
+/// kinds may come in either order; the feature ids of a pair of shapes are the same in both.
 template <int D>
 Manifold<D> collide_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach);
 
 /// Where the shapes are apart: the direction from a to b between their closest points, and the gap. Where
 /// they overlap: the direction in which b has the shortest way out of a, and minus the length of that way.
-/// Nothing for two planes.
+/// Nothing for two of plane and terrain, and for a shape that a terrain does not face.
 template <int D>
 std::optional<Separation<D>> separate_shapes(const Shape<D>& a, const Shape<D>& b,
                                              const Transform<D>& b_in_a);

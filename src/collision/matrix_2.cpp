@@ -1,3 +1,4 @@
+#include "collision/facet.hpp"
 #include "collision/manifold/pairs_2.hpp"
 
 namespace carom::detail {
@@ -6,22 +7,24 @@ namespace {
 
 using Routines = PairRoutines<2>;
 
-constexpr Routines ball{collide_ball, separate_outlines};
-constexpr Routines polygons{collide_polygons, separate_outlines};
+constexpr Routines outlines{collide_outlines, separate_outlines};
 constexpr Routines half_plane{collide_with_plane, separate_from_plane};
 constexpr Routines none{nullptr, nullptr};
 
+constexpr Routines ground{collide_terrain<2>, separate_from_terrain<2>};
+
 // Row: kind of a, column: kind of b. What is below the diagonal is found by exchanging the two; the cylinder
 // and the cone live in space only.
-constexpr Routines matrix[7][7] = {
-    // ball  capsule   box       hull      cylinder cone  plane
-    {ball, ball, ball, ball, none, none, half_plane},              // ball
-    {none, polygons, polygons, polygons, none, none, half_plane},  // capsule
-    {none, none, polygons, polygons, none, none, half_plane},      // box
-    {none, none, none, polygons, none, none, half_plane},          // hull
-    {none, none, none, none, none, none, none},                    // cylinder
-    {none, none, none, none, none, none, none},                    // cone
-    {none, none, none, none, none, none, none},                    // plane
+constexpr Routines matrix[8][8] = {
+    // ball    capsule   box       hull      cylinder cone  plane     terrain
+    {outlines, outlines, outlines, outlines, none, none, half_plane, ground},  // ball
+    {none, outlines, outlines, outlines, none, none, half_plane, ground},      // capsule
+    {none, none, outlines, outlines, none, none, half_plane, ground},          // box
+    {none, none, none, outlines, none, none, half_plane, ground},              // hull
+    {none, none, none, none, none, none, none, none},                          // cylinder
+    {none, none, none, none, none, none, none, none},                          // cone
+    {none, none, none, none, none, none, none, none},                          // plane
+    {none, none, none, none, none, none, none, none},                          // terrain
 };
 
 }  // namespace

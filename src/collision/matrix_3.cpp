@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "collision/facet.hpp"
 #include "collision/manifold/patch_3.hpp"
 
 namespace carom::detail {
@@ -28,19 +29,21 @@ std::optional<Separation<3>> separate(const Shape<3>& a, const Shape<3>& b, cons
 
 template <NearestRoutine3 nearest>
 constexpr PairRoutines<3> by{collide<nearest>, separate<nearest>};
-constexpr PairRoutines<3> none{};  // two planes
+constexpr PairRoutines<3> ground{collide_terrain<3>, separate_from_terrain<3>};
+constexpr PairRoutines<3> none{};  // two of plane and terrain
 constexpr PairRoutines<3> flip{};  // looked up with the shapes exchanged
 
 // clang-format off
-constexpr PairRoutines<3> matrix[7][7] = {
-// a \ b       ball             capsule              box                     hull                       cylinder            cone                plane
-/* ball */     {by<point_point>, by<point_segment>,   by<point_box>,          by<point_polyhedron>,      by<point_revolved>, by<point_revolved>, by<core_plane>},
-/* capsule */  {flip,            by<segment_segment>, by<segment_polyhedron>, by<segment_polyhedron>,    by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* box */      {flip,            flip,                by<box_box>,            by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* hull */     {flip,            flip,                flip,                   by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* cylinder */ {flip,            flip,                flip,                   flip,                      by<core_revolved>,  by<core_revolved>,  by<core_plane>},
-/* cone */     {flip,            flip,                flip,                   flip,                      flip,               by<core_revolved>,  by<core_plane>},
-/* plane */    {flip,            flip,                flip,                   flip,                      flip,               flip,               none},
+constexpr PairRoutines<3> matrix[8][8] = {
+// a \ b       ball             capsule              box                     hull                       cylinder            cone                plane           terrain
+/* ball */     {by<point_point>, by<point_segment>,   by<point_box>,          by<point_polyhedron>,      by<point_revolved>, by<point_revolved>, by<core_plane>, ground},
+/* capsule */  {flip,            by<segment_segment>, by<segment_polyhedron>, by<segment_polyhedron>,    by<core_revolved>,  by<core_revolved>,  by<core_plane>, ground},
+/* box */      {flip,            flip,                by<box_box>,            by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>, ground},
+/* hull */     {flip,            flip,                flip,                   by<polyhedron_polyhedron>, by<core_revolved>,  by<core_revolved>,  by<core_plane>, ground},
+/* cylinder */ {flip,            flip,                flip,                   flip,                      by<core_revolved>,  by<core_revolved>,  by<core_plane>, ground},
+/* cone */     {flip,            flip,                flip,                   flip,                      flip,               by<core_revolved>,  by<core_plane>, ground},
+/* plane */    {flip,            flip,                flip,                   flip,                      flip,               flip,               none,           none},
+/* terrain */  {flip,            flip,                flip,                   flip,                      flip,               flip,               flip,           none},
 };
 // clang-format on
 

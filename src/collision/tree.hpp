@@ -78,6 +78,19 @@ class Tree {
     template <class Visitor>
     void query_pairs(const Tree& other, Visitor&& visit) const;
 
+    /// Follows a box with the half lengths `half` (zero for a ray) whose centre goes from `origin` to
+    /// `origin` + `translation`: calls `visit(payload, limit)` for every leaf whose box it meets at a
+    /// fraction ≤ limit of the way, roughly in the order in which it does. The limit is `limit` first and
+    /// then what `visit` returned last; a negative one ends the walk. Boxes that it misses by rounding alone
+    /// are visited.
+    template <class Visitor>
+    double cast(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half, double limit,
+                Visitor&& visit) const;
+    /// Calls `visit(payload, limit)` for every leaf whose box lies within √limit of the point, the nearer of
+    /// two neighbours first. The limit is the square of a distance; it starts and changes as in `cast`.
+    template <class Visitor>
+    double approach(const Vec<D>& point, double limit, Visitor&& visit) const;
+
     /// Sum of the inner boxes' surfaces over the root's: how many nodes a small query visits on average.
     double cost() const;
     /// Are all links, boxes, heights and counts consistent?
@@ -129,6 +142,63 @@ void Tree<D>::query(const Aabb<D>& box, Visitor&& visit) const {
             stack.push(node.child[0]);
         }
     }
+}
+
+template <int D>
+template <class Visitor>
+double Tree<D>::cast(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half, double limit,
+                     Visitor&& visit) const {
+    const SlabTest<D> slabs(origin, translation, half);
+    struct Entry {
+        std::int32_t node;
+        double enter;
+    };
+    WalkStack<Entry> stack;
+    if (root_ != none) stack.push({root_, slabs.enter(nodes_[root_].box, limit)});
+    while (!stack.empty()) {
+        Entry entry = stack.pop();
+        while (entry.enter <= limit) {
+            const Node& node = nodes_[entry.node];
+            if (node.leaf()) {
+                limit = visit(std::uint32_t(node.child[1]), limit);
+                break;
+            }
+            Entry near{node.child[0], slabs.enter(nodes_[node.child[0]].box, limit)};
+            Entry far{node.child[1], slabs.enter(nodes_[node.child[1]].box, limit)};
+            if (far.enter < near.enter) std::swap(near, far);
+            if (far.enter <= limit) stack.push(far);
+            entry = near;
+        }
+    }
+    return limit;
+}
+
+template <int D>
+template <class Visitor>
+double Tree<D>::approach(const Vec<D>& point, double limit, Visitor&& visit) const {
+    struct Entry {
+        std::int32_t node;
+        double square;
+    };
+    const auto entry_of = [&](std::int32_t node) {
+        return Entry{node, distance_squared(nodes_[node].box, point)};
+    };
+    WalkStack<Entry> stack;
+    if (root_ != none) stack.push(entry_of(root_));
+    while (!stack.empty()) {
+        const Entry entry = stack.pop();
+        if (!(entry.square <= limit)) continue;
+        const Node& node = nodes_[entry.node];
+        if (node.leaf()) {
+            limit = visit(std::uint32_t(node.child[1]), limit);
+            continue;
+        }
+        Entry near = entry_of(node.child[0]), far = entry_of(node.child[1]);
+        if (far.square < near.square) std::swap(near, far);
+        stack.push(far);
+        stack.push(near);
+    }
+    return limit;
 }
 
 template <int D>

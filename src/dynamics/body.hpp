@@ -57,6 +57,7 @@ struct BodyInfo {
     double rest_time = 0;          ///< how long it has been slow and in its place, s
     Transform<D> rest{};           ///< that place: centre of mass and rotation when the rest began
     std::vector<ShapeId<D>> shapes;
+    std::vector<std::uint32_t> ignored;  ///< indices of the bodies with which it does not collide, ascending
     BodyDefinition<D> definition;  ///< as given, without the shapes: overrides, name and user data
 };
 

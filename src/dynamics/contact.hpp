@@ -23,6 +23,7 @@ struct ContactRecordPoint {
 template <int D>
 struct ContactRecord {
     std::uint32_t shape_a = 0, shape_b = 0;
+    std::uint32_t facet = 0;  ///< of the terrain, where one of the shapes is one
     std::uint32_t body_a = 0, body_b = 0;
     int count = 0;
     float restitution = 0;
@@ -39,6 +40,24 @@ struct ContactRecord {
     Angular<D, float> spin_impulse{};  ///< rolling resistance on b in the last sub-step, N·m·s
     std::array<ContactRecordPoint<D>, Manifold<D>::capacity> points{};
     Vec<D, float> total_friction{};  ///< on b through the whole step, N·s
+    bool touching = false;           ///< as last reported by an event
+    bool passing = false;            ///< through a one-way shape
+    bool merged = false;             ///< its points are kept by another contact of the same patch
+    float nearest = 0;               ///< if merged: the smallest separation of its own points, m
 };
+
+/// The contact with a and b exchanged.
+template <int D>
+ContactRecord<D> exchanged(ContactRecord<D> contact);
+
+/// Points of the last step and of this one are the same when they belong to the same features; where two
+/// features meet the name may change from step to step, and then the nearest point that is left counts, if it
+/// is within this share of the smaller body's radius.
+constexpr double near_share = 0.1;
+
+/// Gives the contact the impulses that it had in the last step, when it was `old`. Points are near each other
+/// when their arms on a (`on_b`: on b) differ by less than `near`.
+template <int D>
+void carry_impulses(const ContactRecord<D>& old, ContactRecord<D>& now, double near, bool on_b);
 
 }  // namespace carom::detail

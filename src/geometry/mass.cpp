@@ -2,6 +2,7 @@
 
 #include "geometry/polytope_mass.hpp"
 #include "geometry/shape.hpp"
+#include "geometry/terrain.hpp"
 #include "math/check.hpp"
 #include "math/dim.hpp"
 
@@ -84,6 +85,9 @@ class UnitDensity {
         return polytope_mass(*shape_.core, hull.rounding);
     }
     MassProperties<D> operator()(const Plane<D>&) const { return {}; }
+    template <class Ground>
+    requires(is_terrain_type<Ground>) MassProperties<D>
+    operator()(const Ground&) const { return {}; }
 
     MassProperties3 operator()(const Cylinder& c) const {
         const double square = c.radius * c.radius, volume = pi * square * c.height;
@@ -105,6 +109,9 @@ class UnitDensity {
 
 template <int D>
 MassProperties<D> mass_properties(const ShapeDefinition<D>& shape) {
+    // What has no mass need not be made.
+    const auto is_terrain = [](const auto& g) { return detail::is_terrain_type<std::decay_t<decltype(g)>>; };
+    if (std::visit(is_terrain, shape.geometry)) return {};
     const detail::Shape<D> made = detail::make_shape(shape);
     MassProperties<D> result = std::visit(detail::UnitDensity<D>(made), shape.geometry);
     result.mass *= shape.material.density;

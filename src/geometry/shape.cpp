@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/hull.hpp"
+#include "geometry/terrain.hpp"
 #include "math/check.hpp"
 
 namespace carom::detail {
@@ -10,6 +11,8 @@ namespace {
 
 /// A rounded box keeps a core of at least this share of its size, so that opposite faces stay two.
 constexpr double thinnest_core = 1e-3;
+
+constexpr double fastest_surface = 1e6;  // m/s
 
 void require_length(double value, std::string_view field) {
     require_positive(value, field);
@@ -151,6 +154,14 @@ void fill(Shape<3>& shape, const Cone& cone, const Transform3& placed) {
     fill_round(shape, ShapeKind::cone, cone, placed);
 }
 
+template <int D, class Ground>
+requires std::is_constructible_v < Terrain<D>,
+const Ground&,
+    const Transform<D>& > void fill(Shape<D>& shape, const Ground& ground, const Transform<D>& placed) {
+    shape.kind = ShapeKind::terrain;
+    shape.terrain = std::make_shared<const Terrain<D>>(ground, placed);
+}
+
 /// The corner of the polytope that lies furthest along the direction; the first of several.
 template <int D>
 Vec<D> furthest_corner(const Polytope<D>& core, const Vec<D>& direction) {
@@ -192,7 +203,8 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
             const double a = dot(axis, shape.a), b = dot(axis, shape.b);
             return {std::min(a, b) - shape.radius, std::max(a, b) + shape.radius};
         }
-        case ShapeKind::hull: {
+        case ShapeKind::hull:
+        case ShapeKind::facet: {
             double lowest = 1e300, highest = -1e300;
             for (const Vec<D>& vertex : shape.core->vertices) {
                 const double distance = dot(axis, vertex);
@@ -207,6 +219,16 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
             double half = shape.radius;
             for (int i = 0; i < D; ++i) half += std::fabs(local[i]) * shape.b[i];
             return {middle - half, middle + half};
+        }
+        case ShapeKind::terrain: {
+            // The box that it has, seen from another frame.
+            const Aabb<D>& box = shape.terrain->bounds();
+            double lowest = 0, highest = 0;
+            for (int i = 0; i < D; ++i) {
+                lowest += axis[i] * (axis[i] < 0 ? box.upper[i] : box.lower[i]);
+                highest += axis[i] * (axis[i] < 0 ? box.lower[i] : box.upper[i]);
+            }
+            return {lowest, highest};
         }
         case ShapeKind::plane: {
             // Finite only across the plane: n · x ≤ offset.
@@ -242,6 +264,11 @@ Shape<D> make_shape(const ShapeDefinition<D>& definition) {
     check_material(definition.material);
     require_place(definition.center, "center");
     require_unit(definition.rotation, "rotation");
+    require_in(definition.surface_velocity, -fastest_surface, fastest_surface, "surface_velocity");
+    if (definition.one_way) {
+        require_place(*definition.one_way, "one_way");
+        if (length(*definition.one_way) < shortest_length) throw Error("one_way: a direction has a length");
+    }
     const Transform<D> placed{definition.center, normalized(definition.rotation)};
     Shape<D> shape;
     std::visit([&](const auto& geometry) { fill(shape, geometry, placed); }, definition.geometry);
@@ -267,6 +294,7 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
         case ShapeKind::capsule:
             return dot(shape.b - shape.a, direction) > 0 ? shape.b : shape.a;
         case ShapeKind::hull:
+        case ShapeKind::facet:
             return furthest_corner<D>(*shape.core, direction);
         case ShapeKind::box: {
             const Vec<D> local = unrotate(shape.rotation, direction);
@@ -279,13 +307,46 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
             if constexpr (D == 3) return round_support(shape, direction);
             break;
         case ShapeKind::plane:
+        case ShapeKind::terrain:
             break;
     }
     return {};
 }
 
+template <int D>
+std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& direction) {
+    constexpr double facing_cosine = 0.999;
+    FacePlane<D> best;
+    double most = facing_cosine;
+    const auto offer = [&](const Vec<D>& normal, double offset) {
+        const double cosine = dot(normal, direction);
+        if (cosine <= most) return;
+        most = cosine;
+        best = {normal, offset};
+    };
+    if (shape.kind == ShapeKind::plane) offer(shape.a, shape.offset);
+    if constexpr (D == 3) {
+        if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone) {
+            offer(-shape.b, shape.half_height - dot(shape.b, shape.a));
+            if (shape.kind == ShapeKind::cylinder) offer(shape.b, shape.half_height + dot(shape.b, shape.a));
+        }
+    }
+    if (shape.core) {
+        for (std::size_t i = 0; i < shape.core->normals.size(); ++i) {
+            const Vec<D>& normal = shape.core->normals[i];
+            if constexpr (D == 2)
+                offer(normal, dot(normal, shape.core->vertices[i]) + shape.radius);
+            else
+                offer(normal, shape.core->offsets[i] + shape.radius);
+        }
+    }
+    return most > facing_cosine ? std::optional(best) : std::nullopt;
+}
+
 template Shape<2> make_shape(const ShapeDefinition<2>&);
 template Shape<3> make_shape(const ShapeDefinition<3>&);
+template std::optional<FacePlane<2>> facing_plane(const Shape<2>&, const Vec<2>&);
+template std::optional<FacePlane<3>> facing_plane(const Shape<3>&, const Vec<3>&);
 template Aabb<2> bounds(const Shape<2>&, const Transform<2>&);
 template Aabb<3> bounds(const Shape<3>&, const Transform<3>&);
 template Vec<2> core_support(const Shape<2>&, const Vec<2>&);

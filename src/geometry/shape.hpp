@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "carom/mass.hpp"
@@ -10,8 +11,12 @@
 
 namespace carom::detail {
 
-/// Kinds of shape, in the order of the rows and columns of the collision matrix.
-enum class ShapeKind : std::uint8_t { ball, capsule, box, hull, cylinder, cone, plane };
+/// Kinds of shape, in the order of the rows and columns of the collision matrix. A facet is one segment or
+/// triangle of a terrain while something collides with it, and is not in the matrix.
+enum class ShapeKind : std::uint8_t { ball, capsule, box, hull, cylinder, cone, plane, terrain, facet };
+
+template <int D>
+class Terrain;
 
 /// A convex polygon (2D): corners counter-clockwise; normal i belongs to the edge from corner i to i + 1.
 struct Polygon {
@@ -51,7 +56,8 @@ struct Shape {
                              ///< the core (without the rounding)
     double offset = 0;       ///< plane: n · x ≤ offset is solid
     Rotation<D> rotation{};  ///< box: turn of its axes in the body
-    std::shared_ptr<const Polytope<D>> core;  ///< box, hull: corners and faces in the body's frame
+    std::shared_ptr<const Polytope<D>> core;    ///< box, hull: corners and faces in the body's frame
+    std::shared_ptr<const Terrain<D>> terrain;  ///< chain, mesh, height field: in the body's frame
 };
 
 /// Lengths that shapes may have, m. Beyond these, volumes and moments of inertia leave the range in which
@@ -71,9 +77,19 @@ template <int D>
 Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed);
 
 /// The point of the shape that lies furthest along `direction` (any length but zero), in the body's frame,
-/// without `radius` for ball, capsule, box and hull (their core only). Not for planes.
+/// without `radius` for ball, capsule, box and hull (their core only). Not for planes and terrains.
 template <int D>
 Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction);
+
+/// The flat face of the shape, rounding included, that looks most along the unit vector `direction` (in the
+/// body's frame): its plane n · x = offset. Nothing when that is more than 2.5 degrees off.
+template <int D>
+struct FacePlane {
+    Vec<D> normal{};
+    double offset = 0;
+};
+template <int D>
+std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& direction);
 
 /// The radius by which the core of `core_support` is grown: zero for cylinder and cone.
 template <int D>

@@ -154,18 +154,6 @@ Field not_negative(std::string_view key, double& target) {
             }};
 }
 
-Field not_supported(std::string_view key) {
-    return {key, [](const Value& value) { value.fail("this key is not supported by this version"); }};
-}
-
-Field not_supported(std::string_view key, const json& harmless) {
-    return {key, [harmless](const Value& value) {
-                if (value.json() != harmless)
-                    value.refuse(
-                        fmt::format("is not supported by this version; allowed is {}", quoted(harmless)));
-            }};
-}
-
 const json& member(const Value& object, std::string_view key) {
     if (!object.json().is_object()) object.refuse("is not an object");
     const auto found = object.json().find(key);

@@ -118,11 +118,6 @@ Field required(std::string_view key, Target&& target) {
 /// A number that is not negative.
 Field not_negative(std::string_view key, double& target);
 
-/// A key of the format that this version cannot honour, so that it may not be there.
-Field not_supported(std::string_view key);
-/// The same, but the value that asks for nothing may be there.
-Field not_supported(std::string_view key, const nlohmann::json& harmless);
-
 /// What an object holds at a key that must be there. Refuses what is not an object.
 const nlohmann::json& member(const Value& object, std::string_view key);
 

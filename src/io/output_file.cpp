@@ -14,6 +14,11 @@ namespace fs = std::filesystem;
 
 OutputFile::OutputFile(const fs::path& path, std::string_view what)
     : path_(path), target_(path), written_(path), what_(what) {
+    if (path == "/dev/stdout") {
+        // Where the standard output goes to a file, opening that again would wipe out what stands in it.
+        file_.reset(stdout);
+        return;
+    }
     std::error_code error;
     if (fs::is_symlink(path, error)) {
         // The file that the link leads to is replaced, not the link.
@@ -38,7 +43,9 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::finish() {
-    if (std::fclose(file_.release()) != 0) refuse(errno);
+    if (std::fflush(file_.get()) != 0) refuse(errno);
+    std::FILE* file = file_.release();
+    if (file != stdout && std::fclose(file) != 0) refuse(errno);
     if (written_ != target_) {
         std::error_code error;
         fs::rename(written_, target_, error);

@@ -21,7 +21,9 @@ class OutputFile {
 
   private:
     struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
+        void operator()(std::FILE* file) const {
+            if (file != stdout) std::fclose(file);
+        }
     };
     [[noreturn]] void refuse(int error_number) const;
 

@@ -1,6 +1,7 @@
 #include "io/record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "geometry/shape.hpp"
@@ -50,6 +51,64 @@ ReplayHull hull_of(const Hull3& hull) {
     return result;
 }
 
+ReplayGround ground_of(const Chain& chain) {
+    ReplayGround ground{points_of(chain.points), {}, chain.two_sided};
+    const auto count = static_cast<std::uint32_t>(chain.points.size());
+    for (std::uint32_t i = 0; i + (chain.loop ? 0 : 1) < count; ++i)
+        ground.facets.push_back({i, (i + 1) % count});
+    return ground;
+}
+
+ReplayGround ground_of(const Mesh& mesh) {
+    ReplayGround ground{points_of(mesh.vertices), {}, mesh.two_sided};
+    for (const auto& triangle : mesh.triangles) ground.facets.emplace_back(triangle.begin(), triangle.end());
+    return ground;
+}
+
+/// Adds the facet unless it ends in a hole.
+void add_facet(ReplayGround& ground, std::vector<std::uint32_t> corners) {
+    for (const std::uint32_t corner : corners)
+        if (std::isnan(ground.points[corner][1])) return;
+    ground.facets.push_back(std::move(corners));
+}
+
+/// What stands for a hole lies at the height of another point, so that it does not widen the view.
+ReplayGround filled(ReplayGround ground) {
+    double height = 0;
+    for (const ReplayVector& point : ground.points)
+        if (!std::isnan(point[1])) height = point[1];
+    for (ReplayVector& point : ground.points)
+        if (std::isnan(point[1])) point[1] = height;
+    return ground;
+}
+
+ReplayGround ground_of(const HeightField2& field) {
+    ReplayGround ground;
+    for (std::size_t i = 0; i < field.heights.size(); ++i)
+        ground.points.push_back({static_cast<double>(i) * field.spacing[0], field.heights[i], 0});
+    for (std::uint32_t i = 0; i + 1 < field.heights.size(); ++i) add_facet(ground, {i, i + 1});
+    return filled(std::move(ground));
+}
+
+ReplayGround ground_of(const HeightField3& field) {
+    ReplayGround ground;
+    const auto columns = static_cast<std::uint32_t>(field.heights[0].size());
+    for (std::size_t row = 0; row < field.heights.size(); ++row) {
+        for (std::size_t column = 0; column < columns; ++column)
+            ground.points.push_back({static_cast<double>(column) * field.spacing[0],
+                                     field.heights[row][column],
+                                     static_cast<double>(row) * field.spacing[1]});
+    }
+    for (std::uint32_t row = 0; row + 1 < field.heights.size(); ++row) {
+        for (std::uint32_t column = 0; column + 1 < columns; ++column) {
+            const std::uint32_t here = row * columns + column, below = here + columns;
+            add_facet(ground, {here, below, below + 1});
+            add_facet(ground, {here, below + 1, here + 1});
+        }
+    }
+    return filled(std::move(ground));
+}
+
 template <int D>
 struct GeometryOf {
     ReplayGeometry operator()(const Ball& ball) const { return ReplayBall{ball.radius}; }
@@ -67,6 +126,10 @@ struct GeometryOf {
         return ReplayCylinder{cylinder.radius, cylinder.height};
     }
     ReplayGeometry operator()(const Cone& cone) const { return ReplayCone{cone.radius, cone.height}; }
+    template <class Ground>
+    ReplayGeometry operator()(const Ground& ground) const {
+        return ground_of(ground);
+    }
 };
 
 ReplayBodyType type_of(BodyType type) {

@@ -65,6 +65,17 @@ struct GeometryWriter {
         return {
             {"type", "plane"}, {"normal", vector_json(plane.normal, dimension)}, {"offset", plane.offset}};
     }
+    json operator()(const ReplayGround& ground) const {
+        json points = json::array();
+        for (const ReplayVector& point : ground.points) {
+            json& entry = points.emplace_back(json::array());
+            for (int i = 0; i < dimension; ++i) entry.push_back(shortened(point[i]));
+        }
+        return {{"type", dimension == 2 ? "chain" : "mesh"},
+                {dimension == 2 ? "points" : "vertices", std::move(points)},
+                {dimension == 2 ? "segments" : "triangles", ground.facets},
+                {"two_sided", ground.two_sided}};
+    }
 };
 
 json shape_json(const ReplayShape& shape, int dimension) {

@@ -58,8 +58,16 @@ struct ReplayPlane {
     double offset = 0;
 };
 
-using ReplayGeometry =
-    std::variant<ReplayBall, ReplayBox, ReplayCapsule, ReplayHull, ReplayCylinder, ReplayCone, ReplayPlane>;
+/// Chains and meshes, and height fields as either.
+struct ReplayGround {
+    std::vector<ReplayVector> points;
+    std::vector<std::vector<std::uint32_t>> facets;  ///< segments or triangles, by their corners
+    bool two_sided = false;                          ///< else solid to the right of a segment's direction, or
+                                                     ///< where a triangle's corners run clockwise
+};
+
+using ReplayGeometry = std::variant<ReplayBall, ReplayBox, ReplayCapsule, ReplayHull, ReplayCylinder,
+                                    ReplayCone, ReplayPlane, ReplayGround>;
 
 /// A shape, placed in the frame of its body.
 struct ReplayShape {

@@ -16,6 +16,15 @@ using Materials = std::map<std::string, Material, std::less<>>;
 /// The fields of a material, which a shape may have as well.
 Fields material_fields(Material& material);
 
+/// The material that the value names; `name` becomes what it is called.
+const Material& read_material(const Value& value, const Materials& materials, std::string& name);
+
+/// Make a geometry and say how its fields are read; `materials` are those of the scene.
+Fields chain_fields(Geometry<2>& geometry, const Materials& materials);
+Fields mesh_fields(Geometry<3>& geometry, const Materials& materials);
+template <int D>
+Fields height_field_fields(Geometry<D>& geometry, const Materials& materials);
+
 /// The turn of a frame: `angle` in 2D, `rotation` in 3D.
 template <int D>
 Field orientation(Rotation<D>& rotation) {

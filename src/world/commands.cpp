@@ -51,11 +51,12 @@ std::uint32_t new_body_place(WorldState<D>& w) {
 }
 
 template <int D>
-ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition) {
+ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
+                     Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) w.shapes.emplace_back();
     const bool listed = w.shapes[i].moved;  // a place that was freed since the last step is still on the list
-    w.shapes[i] = {make_shape(definition), definition, body, Tree<D>::none, false, listed};
+    w.shapes[i] = {std::move(shape), definition, body, Tree<D>::none, false, listed};
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -63,10 +64,8 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition
 
 template <int D>
 void drop_shape(WorldState<D>& w, ShapeId<D> id) {
-    for (std::size_t c = 0; c < w.contacts.size();) {
-        const bool its_own = w.contacts[c].shape_a == id.index || w.contacts[c].shape_b == id.index;
-        its_own ? w.remove_contact(c) : void(++c);
-    }
+    w.remove_contacts_of_shape(id.index);
+    w.remove_visits_of(id.index);
     w.remove_leaf(id.index);
     w.shape_slots.release(id.index);
 }
@@ -75,7 +74,7 @@ void drop_shape(WorldState<D>& w, ShapeId<D> id) {
 
 template <int D>
 BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
-    validate(definition);
+    std::vector<Shape<D>> shapes = validate(definition);
     WorldState<D>& w = *state_;
     const std::uint32_t i = new_body_place(w);
     w.types[i] = definition.type;
@@ -92,7 +91,8 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     m.linear_damping = definition.linear_damping;
     m.angular_damping = definition.angular_damping;
     m.locks = definition.locks;
-    for (const ShapeDefinition<D>& shape : definition.shapes) put_shape(w, i, shape);
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+        put_shape(w, i, definition.shapes[k], std::move(shapes[k]));
     w.update_mass(i);  // moves the state from the frame to the centre of mass
     if (definition.type != BodyType::fixed) {
         s.velocity = free_components<D>(m.locks, definition.velocity);
@@ -112,7 +112,9 @@ void World<D>::remove_body(BodyId<D> body) {
     w.wake_neighbours(i);
     w.wake_islands();
     w.remove_contacts_of(i);
+    for (const std::uint32_t other : w.infos[i].ignored) std::erase(w.infos[other].ignored, i);
     for (const ShapeId<D>& shape : w.infos[i].shapes) {
+        w.remove_visits_of(shape.index);
         w.remove_leaf(shape.index);
         w.shape_slots.release(shape.index);
     }
@@ -129,10 +131,9 @@ template <int D>
 ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definition) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(body);
-    const Shape<D> shape = make_shape(definition);
-    if (shape.kind == ShapeKind::plane && w.types[i] != BodyType::fixed)
-        throw Error("geometry: a plane needs a fixed body");
-    const ShapeId<D> id = put_shape(w, i, definition);
+    Shape<D> shape = make_shape(definition);
+    require_place_for(shape, w.types[i]);
+    const ShapeId<D> id = put_shape(w, i, definition, std::move(shape));
     w.update_mass(i);
     w.insert_leaf(id.index);
     w.wake(i);
@@ -153,6 +154,62 @@ void World<D>::remove_shape(ShapeId<D> shape) {
     drop_shape(w, shape);
     std::erase(w.infos[body].shapes, shape);
     w.update_mass(body);
+}
+
+template <int D>
+void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(shape), body = w.shapes[i].body;
+    Shape<D> made = make_shape(definition);
+    require_place_for(made, w.types[body]);
+    std::vector<ShapeDefinition<D>> all;
+    for (const ShapeId<D>& id : w.infos[body].shapes)
+        all.push_back(id == shape ? definition : w.shapes[id.index].definition);
+    body_mass<D>(w.infos[body].definition, all);
+
+    const Filter &before = w.shapes[i].definition.filter, &now = definition.filter;
+    const bool same_company = w.shapes[i].definition.sensor == definition.sensor &&
+                              before.category == now.category && before.mask == now.mask &&
+                              before.group == now.group;
+    w.wake_neighbours(body);
+    if (!same_company) {
+        w.remove_contacts_of_shape(i);
+        w.remove_visits_of(i);
+    }
+    w.shapes[i].shape = std::move(made);
+    w.shapes[i].definition = definition;
+    w.update_mass(body);
+    w.remove_leaf(i);
+    w.insert_leaf(i);
+    for (ContactRecord<D>& c : w.contacts) {
+        if (c.shape_a == i || c.shape_b == i) w.set_surface(c);
+    }
+    w.place_visits_anew(i);
+}
+
+template <int D>
+void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(a), k = w.index(b);
+    if (i == k) throw Error("body: a body does not collide with itself");
+    const bool was_enabled = !std::ranges::binary_search(w.infos[i].ignored, k);
+    if (enabled == was_enabled) return;
+    const auto change = [&](std::uint32_t one, std::uint32_t other) {
+        std::vector<std::uint32_t>& ignored = w.infos[one].ignored;
+        if (enabled)
+            std::erase(ignored, other);
+        else
+            ignored.insert(std::ranges::lower_bound(ignored, other), other);
+        w.wake(one);
+    };
+    change(i, k);
+    change(k, i);
+    for (std::size_t c = 0; c < w.contacts.size();) {
+        const ContactRecord<D>& contact = w.contacts[c];
+        const bool theirs = std::minmax(contact.body_a, contact.body_b) == std::minmax(i, k);
+        theirs ? w.remove_contact(c) : void(++c);
+    }
+    for (const ShapeId<D>& id : w.infos[i].shapes) w.mark_moved(id.index);
 }
 
 template <int D>
@@ -191,6 +248,7 @@ void World<D>::remove_force(ForceId<D> force) {
 template <int D>
 void World<D>::step(double dt) {
     state_->step(dt);
+    state_->keep_in_boxes(dt);
 }
 
 template <int D>
@@ -208,6 +266,7 @@ void World<D>::set_transform(BodyId<D> body, const Transform<D>& transform) {
     for (const ShapeId<D>& id : w.infos[i].shapes) {
         w.remove_leaf(id.index);
         w.insert_leaf(id.index);
+        w.place_visits_anew(id.index);
     }
 }
 
@@ -238,6 +297,8 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         definitions.push_back(w.shapes[id.index].definition);
         if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
             throw Error("type: a body with a plane must be fixed");
+        if (w.shapes[id.index].shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+            throw Error("type: a body with a chain, mesh or height field must be fixed or kinematic");
     }
     BodyDefinition<D> changed = w.infos[i].definition;
     changed.type = type;
@@ -245,7 +306,10 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
     w.wake_neighbours(i);
     w.wake_islands();
     w.remove_contacts_of(i);
-    for (const ShapeId<D>& id : w.infos[i].shapes) w.remove_leaf(id.index);
+    for (const ShapeId<D>& id : w.infos[i].shapes) {
+        w.remove_visits_of(id.index);
+        w.remove_leaf(id.index);
+    }
     w.types[i] = type;
     w.infos[i].definition.type = type;
     w.infos[i].awake = true;

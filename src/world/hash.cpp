@@ -73,10 +73,21 @@ struct Folder {
     }
     void operator()(const Cylinder& s) { all(s.radius, s.height); }
     void operator()(const Cone& s) { all(s.radius, s.height); }
+    template <class T, std::size_t size>
+    void operator()(const std::array<T, size>& list) {
+        for (const T& item : list) (*this)(item);
+    }
+    void operator()(const Material& m) { all(m.density, m.friction, m.restitution, m.rolling_resistance); }
+    void operator()(const Chain& s) { all(s.points, s.loop, s.two_sided, s.materials, s.material_of); }
+    void operator()(const Mesh& s) { all(s.vertices, s.triangles, s.two_sided, s.materials, s.material_of); }
+    template <int D>
+    void operator()(const HeightField<D>& s) {
+        all(s.heights, s.spacing, s.materials, s.material_of);
+    }
     template <int D>
     void operator()(const ShapeDefinition<D>& s) {
-        all(s.geometry, s.center, s.rotation, s.material.density, s.material.friction, s.material.restitution,
-            s.material.rolling_resistance, s.filter.category, s.filter.mask, s.filter.group);
+        all(s.geometry, s.center, s.rotation, s.material, s.filter.category, s.filter.mask, s.filter.group,
+            s.sensor, s.one_way, s.surface_velocity);
     }
 
     template <int D>
@@ -119,9 +130,11 @@ struct Folder {
     }
     template <int D>
     void operator()(const ContactRecord<D>& c) {
-        all(c.shape_a, c.shape_b, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse);
+        all(c.shape_a, c.shape_b, c.facet, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse,
+            c.touching, c.passing, c.merged);
         for (int i = 0; i < c.count; ++i) all(c.points[i].impulse, c.points[i].feature, c.points[i].arm_a);
     }
+    void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>
     void operator()(const WorldDefinition<D>& w) {
         all(w.gravity, w.substeps, w.integrator, w.impacts, w.sleep, w.continuous, w.restitution_threshold);
@@ -144,13 +157,14 @@ std::uint64_t World<D>::hash() const {
         const BodyInfo<D>& info = w.infos[id.index];
         fold.all(id, w.types[id.index], w.states[id.index], w.masses[id.index], w.applied[id.index].force,
                  w.applied[id.index].torque);
+        fold(info.ignored);
         fold.all(info.awake, info.disabled, info.can_sleep, info.bullet, info.rest_time, info.rest);
         for (const ShapeId<D>& shape : info.shapes) fold.all(shape, w.shapes[shape.index].definition);
     }
     w.forces.each([&](const ForceDefinition<D>& force, bool fired) {
         fold.all(force.kind, force.from, force.to, fired);
     });
-    fold(w.contacts);
+    fold.all(w.contacts, w.sensor_pairs);
     return fold.hash.value();
 }
 

@@ -38,7 +38,9 @@ bool is_isotropic(const Symmetric3<double>& i) {
 template <int D>
 MassProperties<D> sum_of_shapes(const std::vector<ShapeDefinition<D>>& shapes) {
     std::vector<MassProperties<D>> parts;
-    for (const ShapeDefinition<D>& s : shapes) parts.push_back(carom::mass_properties<D>(s));
+    for (const ShapeDefinition<D>& s : shapes) {
+        if (!s.sensor) parts.push_back(carom::mass_properties<D>(s));
+    }
     return combine<D>(parts);
 }
 

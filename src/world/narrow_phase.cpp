@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/facet.hpp"
 #include "collision/manifold.hpp"
 #include "world/state.hpp"
 
@@ -16,38 +17,6 @@ constexpr double speculative_distance = 0.02;
 template <int D>
 double turning_speed(const BodyState<D>& s, const BodyMass<D>& m) {
     return std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * m.radius;
-}
-
-/// Points of the last step and of this one are the same when they belong to the same features; where two
-/// features meet the name may change from step to step, and then the nearest point that is left counts, if it
-/// is within this share of the smaller body's radius.
-constexpr double near_share = 0.1;
-
-/// Gives the points the impulses that they had in the last step. False when none was there before.
-template <int D>
-bool carry_impulses(const ContactRecord<D>& old, ContactRecord<D>& now, double near) {
-    bool taken[Manifold<D>::capacity] = {}, found[Manifold<D>::capacity] = {};
-    const auto take = [&](int i, int k) {
-        now.points[i].impulse = old.points[k].impulse;
-        found[i] = taken[k] = true;
-    };
-    for (int i = 0; i < now.count; ++i) {
-        for (int k = 0; k < old.count && !found[i]; ++k) {
-            if (!taken[k] && old.points[k].feature == now.points[i].feature) take(i, k);
-        }
-    }
-    for (int i = 0; i < now.count; ++i) {
-        float nearest = static_cast<float>(near * near);
-        int best = -1;
-        for (int k = 0; k < old.count && !found[i]; ++k) {
-            const float d = length_squared(old.points[k].arm_a - now.points[i].arm_a);
-            if (taken[k] || d > nearest) continue;
-            nearest = d;
-            best = k;
-        }
-        if (best >= 0) take(i, best);
-    }
-    return std::find(std::begin(found), std::end(found), true) != std::end(found);
 }
 
 /// Radius of the shape's curvature where it touches along `normal` (in its body's frame): a cylinder or cone
@@ -68,6 +37,25 @@ BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity
     return s;
 }
 
+/// Manifold and gap of two shapes (see manifold.hpp), of which one may be a terrain: then of its facet.
+template <int D>
+Manifold<D> manifold_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                             const Transform<D>& b_in_a, double reach) {
+    if (a.kind == ShapeKind::terrain) return collide_facet<D>(b, a.terrain->facet(facet), b_in_a, reach);
+    if (b.kind != ShapeKind::terrain) return collide_shapes<D>(a, b, b_in_a, reach);
+    const Manifold<D> seen = collide_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a), reach);
+    return moved(exchanged(seen), b_in_a);
+}
+template <int D>
+std::optional<Separation<D>> gap_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                                         const Transform<D>& b_in_a) {
+    if (a.kind == ShapeKind::terrain) return separate_facet<D>(b, a.terrain->facet(facet), b_in_a);
+    if (b.kind != ShapeKind::terrain) return separate_shapes<D>(a, b, b_in_a);
+    auto gap = separate_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a));
+    if (gap) gap->axis = -rotate(b_in_a.rotation, gap->axis);
+    return gap;
+}
+
 }  // namespace
 
 /// Contact points of two bodies that are placed so; the gaps are those in these places.
@@ -75,22 +63,27 @@ template <int D>
 void WorldState<D>::touch(ContactRecord<D>& c, const BodyState<D>& a, const BodyState<D>& b,
                           double reach) const {
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
-    const Manifold<D> m = collide_shapes<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape,
-                                            relative(frame(a, ma), frame(b, mb)), reach);
-    c.count = m.count;
+    const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
+    const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
+    Manifold<D> m = manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach);
+    const bool on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
+    if (on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
     c.normal = narrow<float>(rotate(a.rotation, m.normal));
-    c.roundness_a = static_cast<float>(roundness<D>(shapes[c.shape_a].shape, m.normal));
-    c.roundness_b = static_cast<float>(
-        roundness<D>(shapes[c.shape_b].shape, unrotate(b.rotation, rotate(a.rotation, m.normal))));
+    c.roundness_a = static_cast<float>(roundness<D>(shape_a, m.normal));
+    c.roundness_b =
+        static_cast<float>(roundness<D>(shape_b, unrotate(b.rotation, rotate(a.rotation, m.normal))));
     const Vec<D> between = a.position - b.position;
+    c.count = 0;
     for (int i = 0; i < m.count; ++i) {
         const Vec<D> arm = rotate(a.rotation, m.points[i].position - ma.center);
-        c.points[i] = {narrow<float>(arm),
-                       narrow<float>(arm + between),
-                       static_cast<float>(m.points[i].separation),
-                       0,
-                       0,
-                       m.points[i].feature};
+        ContactRecordPoint<D>& p = c.points[c.count];
+        p = {narrow<float>(arm),
+             narrow<float>(arm + between),
+             static_cast<float>(m.points[i].separation),
+             0,
+             0,
+             m.points[i].feature};
+        if (!on_fixed || !is_artefact_of_seam(c, a, b, p)) ++c.count;
     }
 }
 
@@ -112,8 +105,8 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
     for (int i = 0; i < most_advances; ++i) {
         a = coasted(sa, ma, definition.gravity, elapsed);
         b = coasted(sb, mb, definition.gravity, elapsed);
-        const auto gap = separate_shapes<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape,
-                                            relative(frame(a, ma), frame(b, mb)));
+        const auto gap = gap_between<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape, c.facet,
+                                        relative(frame(a, ma), frame(b, mb)));
         if (!gap) return;
         const bool last = i + 1 == most_advances;
         if (gap->distance <= near || last) {
@@ -144,16 +137,16 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, double dt) const {
     const ContactRecord<D> old = c;
     touch(c, sa, sb, definition.continuous ? speculative_distance : speculative_distance + way);
     if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) meet_ahead(c, dt);
-    if (!carry_impulses(old, c, near_share * std::min(ma.radius, mb.radius))) {
-        c.friction_impulse = {};
-        c.spin_impulse = {};
-        c.twist_impulse = 0;
-    }
+    pass_one_way(c, old.count > 0 || old.passing);
+    drag_along(c);
+    carry_impulses(old, c, near_share * std::min(ma.radius, mb.radius), ma.inverse_mass == 0);
     c.total_friction = {};
+    c.merged = false;
 }
 
 template <int D>
 void WorldState<D>::collide(double dt) {
+    list_fixed_contacts();
     for (ContactRecord<D>& c : contacts) {
         if (infos[c.body_a].disabled || infos[c.body_b].disabled) {
             c.count = 0;
@@ -161,6 +154,7 @@ void WorldState<D>::collide(double dt) {
             update_contact(c, dt);
         }
     }
+    merge_patches();
 }
 
 template void WorldState<2>::collide(double);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 
+#include "geometry/terrain.hpp"
 #include "world/state.hpp"
 
 namespace carom::detail {
@@ -18,6 +20,21 @@ Aabb<D> grown(const Aabb<D>& box, double margin, const Vec<D>& motion) {
         r.upper[i] = box.upper[i] + margin + std::max(motion[i], 0.0);
     }
     return r;
+}
+
+/// A box that holds `box`, in the frame.
+template <int D>
+Aabb<D> box_in(const Transform<D>& frame, const Aabb<D>& box) {
+    const Vec<D> center = unrotate(frame.rotation, 0.5 * (box.lower + box.upper) - frame.position);
+    const Vec<D> half = 0.5 * (box.upper - box.lower);
+    Vec<D> reach{};
+    for (int i = 0; i < D; ++i) {
+        Vec<D> side{};
+        side[i] = half[i];
+        const Vec<D> turned = unrotate(frame.rotation, side);
+        for (int k = 0; k < D; ++k) reach[k] += std::fabs(turned[k]);
+    }
+    return {center - reach, center + reach};
 }
 
 }  // namespace
@@ -78,18 +95,26 @@ void WorldState<D>::refresh_boxes(double dt) {
     }
 }
 
+/// May the two shapes touch, or where one is a sensor, notice each other?
 template <int D>
-bool WorldState<D>::may_collide(std::uint32_t shape_a, std::uint32_t shape_b) const {
+bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const {
     const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
     if (a.body == b.body || infos[a.body].disabled || infos[b.body].disabled) return false;
-    if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
+    if (a.definition.sensor || b.definition.sensor) {
+        if (a.definition.sensor && b.definition.sensor) return false;
+        if (types[a.body] == BodyType::fixed && types[b.body] == BodyType::fixed) return false;
+    } else {
+        if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
+        if (std::ranges::binary_search(infos[a.body].ignored, b.body)) return false;
+    }
     const Filter &fa = a.definition.filter, &fb = b.definition.filter;
     if (fa.group == fb.group && fa.group != 0) return fa.group > 0;
     return (fa.mask & fb.category) != 0 && (fb.mask & fa.category) != 0;
 }
 
-/// Every pair of a shape whose box is new and a shape that it overlaps becomes a contact. Pairs are sorted
-/// before they are taken up, so that the order of contacts depends on the shapes alone.
+/// Every pair of a shape whose box is new and a shape, or a facet of a terrain, that it overlaps becomes a
+/// contact. Pairs are sorted before they are taken up, so that the order of contacts depends on the shapes
+/// alone.
 template <int D>
 void WorldState<D>::find_pairs() {
     new_pairs.clear();
@@ -97,9 +122,10 @@ void WorldState<D>::find_pairs() {
         const ShapeRecord<D>& s = shapes[shape];
         if (!shape_slots.in_use(shape) || s.leaf == Tree<D>::none) continue;
         const auto meet = [&](std::uint32_t other) {
-            const std::uint32_t a = std::min(shape, other), b = std::max(shape, other);
-            if (shape != other && may_collide(a, b) && !pairs.contains(a, b))
-                new_pairs.push_back(std::uint64_t{a} << 32 | b);
+            if (shape == other || !may_meet(shape, other)) return;
+            if (is_terrain_contact(shape, other)) return find_facets(shape, other);
+            const PairKey key = PairKey::of(shape, other);
+            if (!pairs.contains(key)) new_pairs.push_back(key);
         };
         const Aabb<D>& box = fat_box(s);
         moving_tree.query(box, meet);
@@ -110,36 +136,129 @@ void WorldState<D>::find_pairs() {
 
     std::sort(new_pairs.begin(), new_pairs.end());
     new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
-    for (const std::uint64_t pair : new_pairs) {
-        ContactRecord<D> c;
-        c.shape_a = static_cast<std::uint32_t>(pair >> 32);
-        c.shape_b = static_cast<std::uint32_t>(pair);
-        c.body_a = shapes[c.shape_a].body;
-        c.body_b = shapes[c.shape_b].body;
-        const Material &a = shapes[c.shape_a].definition.material, &b = shapes[c.shape_b].definition.material;
-        c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
-        c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
-        const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
-        c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
-        contacts.push_back(c);
-        pairs.insert(c.shape_a, c.shape_b);
+    for (const PairKey& key : new_pairs) {
+        pairs.insert(key);
+        if (shapes[key.a].definition.sensor) {
+            sensor_pairs.push_back({key.a, key.b});
+        } else if (shapes[key.b].definition.sensor) {
+            sensor_pairs.push_back({key.b, key.a});
+        } else {
+            contacts.push_back(new_contact(key));
+        }
     }
 }
 
+/// Does a shape meet the facets of a terrain here? Sensors care for the whole.
+template <int D>
+bool WorldState<D>::is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const {
+    const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
+    if (a.definition.sensor || b.definition.sensor) return false;
+    return a.shape.kind == ShapeKind::terrain || b.shape.kind == ShapeKind::terrain;
+}
+
+template <int D>
+void WorldState<D>::find_facets(std::uint32_t shape_a, std::uint32_t shape_b) {
+    const bool a_terrain = shapes[shape_a].shape.kind == ShapeKind::terrain;
+    const ShapeRecord<D>& ground = shapes[a_terrain ? shape_a : shape_b];
+    const Aabb<D>& box = fat_box(shapes[a_terrain ? shape_b : shape_a]);
+    ground.shape.terrain->query(box_in(frame_of(ground.body), box), [&](std::uint32_t facet) {
+        const PairKey key = PairKey::of(shape_a, shape_b, facet);
+        if (!pairs.contains(key)) new_pairs.push_back(key);
+    });
+}
+
+template <int D>
+ContactRecord<D> WorldState<D>::new_contact(const PairKey& key) const {
+    ContactRecord<D> c;
+    c.shape_a = key.a;
+    c.shape_b = key.b;
+    c.facet = key.part;
+    c.body_a = shapes[key.a].body;
+    c.body_b = shapes[key.b].body;
+    set_surface(c);
+    return c;
+}
+
+/// What the materials of the two shapes make of their contact.
+template <int D>
+void WorldState<D>::set_surface(ContactRecord<D>& c) const {
+    const auto material = [&](std::uint32_t shape) -> const Material& {
+        const ShapeRecord<D>& s = shapes[shape];
+        const Material* own =
+            s.shape.kind == ShapeKind::terrain ? s.shape.terrain->material(c.facet) : nullptr;
+        return own ? *own : s.definition.material;
+    };
+    const Material &a = material(c.shape_a), &b = material(c.shape_b);
+    c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
+    c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
+    const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
+    c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
+}
+
+/// Forgets the pairs whose boxes parted; only a box that is new can have left another.
 template <int D>
 void WorldState<D>::drop_pairs() {
     for (std::size_t i = 0; i < contacts.size();) {
         const ContactRecord<D>& c = contacts[i];
-        const bool near = overlaps(fat_box(shapes[c.shape_a]), fat_box(shapes[c.shape_b]));
-        near ? void(++i) : remove_contact(i);
+        const bool changed = shapes[c.shape_a].moved || shapes[c.shape_b].moved;
+        !changed || are_near(c) ? void(++i) : remove_contact(i);
+    }
+    for (std::size_t i = 0; i < sensor_pairs.size();) {
+        const SensorPair& pair = sensor_pairs[i];
+        const bool near = overlaps(fat_box(shapes[pair.sensor]), fat_box(shapes[pair.visitor]));
+        near ? void(++i) : remove_visit(i);
     }
 }
 
 template <int D>
+bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
+    const ShapeRecord<D>&a = shapes[c.shape_a], &b = shapes[c.shape_b];
+    if (!overlaps(fat_box(a), fat_box(b))) return false;
+    if (!is_terrain_contact(c.shape_a, c.shape_b)) return true;
+    const bool a_terrain = a.shape.kind == ShapeKind::terrain;
+    const ShapeRecord<D>& ground = a_terrain ? a : b;
+    const Aabb<D> box = box_in(frame_of(ground.body), fat_box(a_terrain ? b : a));
+    return overlaps(box, ground.shape.terrain->facet(c.facet).bounds());
+}
+
+template <int D>
 void WorldState<D>::remove_contact(std::size_t contact) {
-    pairs.erase(contacts[contact].shape_a, contacts[contact].shape_b);
+    const ContactRecord<D>& c = contacts[contact];
+    pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
+    if (c.touching && !is_terrain_contact(c.shape_a, c.shape_b))
+        dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
     contacts[contact] = contacts.back();
     contacts.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
+    for (std::size_t i = 0; i < contacts.size();) {
+        const bool its_own = contacts[i].shape_a == shape || contacts[i].shape_b == shape;
+        its_own ? remove_contact(i) : void(++i);
+    }
+}
+
+template <int D>
+void WorldState<D>::place_visits_anew(std::uint32_t shape) {
+    for (SensorPair& pair : sensor_pairs) pair.placed_anew |= pair.sensor == shape || pair.visitor == shape;
+}
+
+template <int D>
+void WorldState<D>::remove_visit(std::size_t sensor_pair) {
+    const SensorPair& pair = sensor_pairs[sensor_pair];
+    pairs.erase(PairKey::of(pair.sensor, pair.visitor));
+    if (pair.inside) dropped_visits.push_back({names(pair.sensor, pair.visitor)});
+    sensor_pairs[sensor_pair] = sensor_pairs.back();
+    sensor_pairs.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_visits_of(std::uint32_t shape) {
+    for (std::size_t i = 0; i < sensor_pairs.size();) {
+        const bool its_own = sensor_pairs[i].sensor == shape || sensor_pairs[i].visitor == shape;
+        its_own ? remove_visit(i) : void(++i);
+    }
 }
 
 template <int D>
@@ -150,15 +269,20 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                                     \
-    template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const; \
-    template void WorldState<D>::mark_moved(std::uint32_t);                      \
-    template void WorldState<D>::insert_leaf(std::uint32_t);                     \
-    template void WorldState<D>::remove_leaf(std::uint32_t);                     \
-    template void WorldState<D>::refresh_boxes(double);                          \
-    template void WorldState<D>::find_pairs();                                   \
-    template void WorldState<D>::drop_pairs();                                   \
-    template void WorldState<D>::remove_contact(std::size_t);                    \
+#define CAROM_INSTANTIATE(D)                                                             \
+    template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const;         \
+    template void WorldState<D>::mark_moved(std::uint32_t);                              \
+    template void WorldState<D>::insert_leaf(std::uint32_t);                             \
+    template void WorldState<D>::remove_leaf(std::uint32_t);                             \
+    template void WorldState<D>::refresh_boxes(double);                                  \
+    template bool WorldState<D>::is_terrain_contact(std::uint32_t, std::uint32_t) const; \
+    template void WorldState<D>::find_pairs();                                           \
+    template void WorldState<D>::drop_pairs();                                           \
+    template void WorldState<D>::remove_contact(std::size_t);                            \
+    template void WorldState<D>::remove_visits_of(std::uint32_t);                        \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                \
+    template void WorldState<D>::place_visits_anew(std::uint32_t);                       \
+    template void WorldState<D>::set_surface(ContactRecord<D>&) const;                   \
     template void WorldState<D>::remove_contacts_of(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "carom/error.hpp"
 #include "world/state.hpp"
 
@@ -125,6 +127,40 @@ std::span<const MovedBody<D>> World<D>::moved_bodies() const {
 template <int D>
 std::span<const BodyId<D>> World<D>::quarantined() const {
     return state_->quarantined;
+}
+
+template <int D>
+std::span<const ContactBegin<D>> World<D>::contact_begins() const {
+    return state_->events.contact_begins;
+}
+template <int D>
+std::span<const ContactEnd<D>> World<D>::contact_ends() const {
+    return state_->events.contact_ends;
+}
+template <int D>
+std::span<const ContactHit<D>> World<D>::contact_hits() const {
+    return state_->events.contact_hits;
+}
+template <int D>
+std::span<const SensorBegin<D>> World<D>::sensor_begins() const {
+    return state_->events.sensor_begins;
+}
+template <int D>
+std::span<const SensorEnd<D>> World<D>::sensor_ends() const {
+    return state_->events.sensor_ends;
+}
+
+template <int D>
+std::vector<ShapeId<D>> World<D>::inside(ShapeId<D> sensor) const {
+    const std::uint32_t i = state_->index(sensor);
+    if (!state_->shapes[i].definition.sensor) throw Error("sensor: the shape is not a sensor");
+    std::vector<ShapeId<D>> result;
+    for (const SensorPair& pair : state_->sensor_pairs) {
+        if (pair.sensor == i && pair.inside)
+            result.push_back(state_->shape_slots.template id<ShapeId<D>>(pair.visitor));
+    }
+    std::ranges::sort(result, {}, &ShapeId<D>::index);
+    return result;
 }
 
 template <int D>

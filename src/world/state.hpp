@@ -28,6 +28,45 @@ struct ShapeRecord {
     bool moved = false;  ///< its fat box changed since pairs were last found
 };
 
+/// A contact of an awake dynamic body with a fixed shape.
+struct FixedContact {
+    std::uint32_t body = 0, shape = 0;   ///< what moves
+    std::uint32_t other = 0, facet = 0;  ///< the fixed shape
+    std::uint32_t contact = 0;
+};
+
+/// A sensor and a shape whose bounds overlap.
+struct SensorPair {
+    std::uint32_t sensor = 0, visitor = 0;  ///< shapes
+    bool inside = false;
+    bool placed_anew = true;  ///< one of the two was moved by the user, or the pair is new
+};
+
+/// A shape and a terrain that touch, by some of its facets.
+template <int D>
+struct TerrainTouch {
+    ShapePair<D> pair;
+    std::uint32_t contact = 0;  ///< the first of them
+};
+
+/// What happened: filled by a step and by what is removed before it.
+template <int D>
+struct EventBuffers {
+    std::vector<ContactBegin<D>> contact_begins;
+    std::vector<ContactEnd<D>> contact_ends;
+    std::vector<ContactHit<D>> contact_hits;
+    std::vector<SensorBegin<D>> sensor_begins;
+    std::vector<SensorEnd<D>> sensor_ends;
+
+    void clear() {
+        contact_begins.clear();
+        contact_ends.clear();
+        contact_hits.clear();
+        sensor_begins.clear();
+        sensor_ends.clear();
+    }
+};
+
 /// Everything that a world holds: arrays by index. The step reads and writes `states`, `masses`, `contacts`
 /// and the trees; the rest is for the user.
 template <int D>
@@ -57,21 +96,33 @@ struct WorldState {
 
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
+    std::vector<SensorPair> sensor_pairs;
 
     // Results of the last step.
     std::vector<MovedBody<D>> moved_bodies;
     std::vector<BodyId<D>> quarantined;
+    EventBuffers<D> events;
+    std::vector<ContactEnd<D>>
+        dropped_contacts;  ///< that touched when they were dropped, since events were last reported
+    std::vector<SensorEnd<D>> dropped_visits;
+    std::vector<TerrainTouch<D>> terrain_touched,
+        terrain_before;  ///< now and a step ago, in the order of shapes
 
     // Working space of a step.
     std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
     std::vector<std::uint8_t> moving;   ///< by body index: is it in `awake`?
     std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
     std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
-    std::vector<std::uint64_t> new_pairs;
+    std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
     std::vector<std::uint8_t> touched;
     std::vector<BodyState<D>> before;  ///< states of `awake` at the start of the step
+    std::vector<std::uint32_t> place;  ///< in `awake` and `before`, by body index, of those that are there
+    std::vector<FixedContact> fixed_contacts;      ///< by body, shape and fixed shape
+    std::vector<ContactRecord<D>> patches_before;  ///< of shapes that have several, in the last step
+    std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
+    std::vector<ManifoldPoint<D>> patch_points;
     std::vector<std::uint32_t> to_wake;
     Islands islands;
     Solver<D> solver;
@@ -88,12 +139,17 @@ struct WorldState {
 
     // pairs.cpp: who is near whom.
     void refresh_boxes(double dt);
-    void find_pairs();
     void drop_pairs();
+    void find_pairs();
     void insert_leaf(std::uint32_t shape);
     void remove_leaf(std::uint32_t shape);
     void mark_moved(std::uint32_t shape);
-    bool may_collide(std::uint32_t shape_a, std::uint32_t shape_b) const;
+    bool may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const;
+    bool is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
+    void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
+    bool are_near(const ContactRecord<D>& contact) const;
+    ContactRecord<D> new_contact(const PairKey& key) const;
+    void set_surface(ContactRecord<D>& contact) const;
     const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
 
     // narrow_phase.cpp: who touches whom, and where.
@@ -101,6 +157,31 @@ struct WorldState {
     void update_contact(ContactRecord<D>& contact, double dt) const;
     void touch(ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b, double reach) const;
     void meet_ahead(ContactRecord<D>& contact, double dt) const;
+
+    // patches.cpp: flush fixed shapes are one surface.
+    void list_fixed_contacts();
+    template <class Visit>
+    void each_fixed_group(const Visit& visit) const;
+    void merge_patches();
+    void merge_group(std::span<const FixedContact> group, std::span<const ContactRecord<D>> before_step);
+    void merge_members(std::uint32_t body, std::span<const ContactRecord<D>> before_step);
+
+    // surfaces.cpp: what is particular about the surfaces that touch.
+    void lay_on_fixed_face(Manifold<D>& manifold, const ContactRecord<D>& contact,
+                           const Transform<D>& b_in_a) const;
+    bool is_artefact_of_seam(const ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b,
+                             const ContactRecordPoint<D>& point) const;
+    Rotation<D> axes_of(std::uint32_t shape) const;
+    void pass_one_way(ContactRecord<D>& contact, bool was_near) const;
+    void drag_along(ContactRecord<D>& contact) const;
+
+    // events.cpp: what began, ended and hit.
+    void report_contacts();
+    void report_terrain();
+    void report_begin(const ContactRecord<D>& contact);
+    void sense();
+    bool overlap(std::uint32_t shape_a, std::uint32_t shape_b) const;
+    ShapePair<D> names(std::uint32_t shape_a, std::uint32_t shape_b) const;
 
     // sleep.cpp
     void wake_touched(double dt);
@@ -110,6 +191,18 @@ struct WorldState {
     void wake_neighbours(std::uint32_t body);
     void fall_asleep(double dt);
     void join_islands();
+
+    // queries.cpp: questions between steps.
+    void keep_in_boxes(double dt);
+    bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;
+    Transform<D> placement_of(std::uint32_t shape) const { return frame_of(shapes[shape].body); }
+    WorldHit<D> named(std::uint32_t shape, const CastHit<D>& hit) const;
+    template <class Visitor>
+    void cast_through_trees(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half,
+                            Visitor&& visit) const;
+    template <class Test>
+    std::vector<ShapeId<D>> shapes_in(const Aabb<D>& box, const QueryFilter<D>& filter,
+                                      const Test& test) const;
 
     // mass.cpp
     void update_mass(std::uint32_t body);
@@ -127,6 +220,10 @@ struct WorldState {
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
     void remove_contacts_of(std::uint32_t body);
     void remove_contact(std::size_t contact);
+    void remove_contacts_of_shape(std::uint32_t shape);
+    void remove_visits_of(std::uint32_t shape);
+    void place_visits_anew(std::uint32_t shape);
+    void remove_visit(std::size_t sensor_pair);
 };
 
 /// Velocity of a body below which, and way within `time_to_sleep` less than which, it counts as at rest.

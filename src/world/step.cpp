@@ -45,8 +45,8 @@ void WorldState<D>::step(double dt) {
 
     begin_step(dt);             // timed impulses; which bodies are awake
     refresh_boxes(dt);          // broad phase: fat boxes that were left are renewed
-    find_pairs();               //   new neighbours become contacts
-    drop_pairs();               //   those that parted are forgotten
+    drop_pairs();               //   neighbours that parted are forgotten
+    find_pairs();               //   new ones become contacts
     collide(dt);                // narrow phase: manifolds, impulses carried over
     wake_touched(dt);           // sleepers that are being hit
     sum_forces();               // gravity, the user's forces, generators
@@ -54,6 +54,8 @@ void WorldState<D>::step(double dt) {
     fly_free_bodies(dt);        // all others: the integrator
     move_kinematic_bodies(dt);  // what only the user moves
     finish_bodies();            // quarantine, list of moved bodies
+    report_contacts();          // what began, ended and hit
+    sense();                    // who is inside the sensors
     fall_asleep(dt);            // islands at rest
 
     time += dt;

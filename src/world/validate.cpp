@@ -11,6 +11,7 @@ void validate(const WorldDefinition<D>& w) {
     require_finite(w.gravity, "gravity");
     require_in(w.substeps, 1, 64, "substeps");
     require_not_negative(w.restitution_threshold, "restitution_threshold");
+    require_not_negative(w.hit_speed, "hit_speed");
 }
 
 void validate_inertia(double inertia) { require_positive(inertia, "inertia"); }
@@ -21,7 +22,15 @@ void validate_inertia(const Symmetric3<double>& inertia) {
 }
 
 template <int D>
-void validate(const BodyDefinition<D>& b) {
+void require_place_for(const Shape<D>& shape, BodyType type) {
+    if (shape.kind == ShapeKind::plane && type != BodyType::fixed)
+        throw Error("geometry: a plane needs a fixed body");
+    if (shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+        throw Error("geometry: a chain, mesh or height field needs a fixed or kinematic body");
+}
+
+template <int D>
+std::vector<Shape<D>> validate(const BodyDefinition<D>& b) {
     require_finite(b.position, "position");
     require_unit(b.rotation, "rotation");
     require_finite(b.velocity, "velocity");
@@ -32,14 +41,15 @@ void validate(const BodyDefinition<D>& b) {
     require_finite(b.gravity_scale, "gravity_scale");
     require_not_negative(b.linear_damping, "linear_damping");
     require_not_negative(b.angular_damping, "angular_damping");
+    std::vector<Shape<D>> shapes;
     for (std::size_t i = 0; i < b.shapes.size(); ++i) {
         within("shapes[" + std::to_string(i) + "].", [&] {
-            const Shape<D> shape = make_shape(b.shapes[i]);
-            if (shape.kind == ShapeKind::plane && b.type != BodyType::fixed)
-                throw Error("geometry: a plane needs a fixed body");
+            shapes.push_back(make_shape(b.shapes[i]));
+            require_place_for(shapes.back(), b.type);
         });
     }
     body_mass<D>(b, b.shapes);
+    return shapes;
 }
 
 template <int D>
@@ -76,10 +86,12 @@ void validate(const ForceDefinition<D>& f) {
     std::visit(check, f.kind);
 }
 
+template void require_place_for(const Shape<2>&, BodyType);
+template void require_place_for(const Shape<3>&, BodyType);
 template void validate(const WorldDefinition<2>&);
 template void validate(const WorldDefinition<3>&);
-template void validate(const BodyDefinition<2>&);
-template void validate(const BodyDefinition<3>&);
+template std::vector<Shape<2>> validate(const BodyDefinition<2>&);
+template std::vector<Shape<3>> validate(const BodyDefinition<3>&);
 template void validate(const ForceDefinition<2>&);
 template void validate(const ForceDefinition<3>&);
 

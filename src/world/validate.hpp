@@ -7,6 +7,7 @@
 #include "carom/error.hpp"
 #include "carom/forces.hpp"
 #include "carom/world.hpp"
+#include "geometry/shape.hpp"
 
 namespace carom::detail {
 
@@ -23,11 +24,16 @@ auto within(const std::string& prefix, Work&& work) {
 /// Each throws `Error` that names the field.
 template <int D>
 void validate(const WorldDefinition<D>& definition);
+/// Returns the shapes, made ready.
 template <int D>
-void validate(const BodyDefinition<D>& definition);
+std::vector<Shape<D>> validate(const BodyDefinition<D>& definition);
 /// Numbers only; whether the bodies exist is the world's to check.
 template <int D>
 void validate(const ForceDefinition<D>& definition);
+
+/// Throws `Error` when a body of this type cannot carry the shape.
+template <int D>
+void require_place_for(const Shape<D>& shape, BodyType type);
 
 void validate_inertia(double inertia);
 void validate_inertia(const Symmetric3<double>& inertia);

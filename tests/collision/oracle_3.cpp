@@ -17,6 +17,14 @@ Body3::Body3(const Geometry<3>& geometry, const Transform3& placed) : placed_(pl
     for (const Face& face : faces_) placed_normals_.push_back(rotate(placed_.rotation, face.normal));
 }
 
+Body3::Body3(const std::array<Vec3, 3>& triangle)
+    : vertices_(triangle.begin(), triangle.end()), corners_(vertices_) {
+    const Vec3 normal = normalized(cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+    placed_normals_ = {normal, -normal};
+    for (const Vec3& n : placed_normals_) faces_.push_back({n, dot(n, triangle[0])});
+    for (std::size_t i = 0; i < 3; ++i) size_ = std::max(size_, length(triangle[i] - triangle[(i + 1) % 3]));
+}
+
 void Body3::set(const Ball& ball) {
     vertices_ = {{0, 0, 0}};
     radius_ = ball.radius;

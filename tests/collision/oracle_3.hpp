@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <variant>
@@ -15,6 +16,8 @@ namespace carom::test::space {
 class Body3 {
   public:
     Body3(const Geometry<3>& geometry, const Transform3& placed);
+    /// A triangle, which has two faces and no volume.
+    explicit Body3(const std::array<Vec3, 3>& triangle);
 
     /// The furthest that the shape reaches along the unit vector, in the outer frame.
     double reach(const Vec3& direction) const;
@@ -41,6 +44,8 @@ class Body3 {
     void set(const Plane3& plane);
     void set(const Cylinder& cylinder) { set_revolved(cylinder.radius, cylinder.radius, cylinder.height); }
     void set(const Cone& cone) { set_revolved(cone.radius, 0, cone.height); }
+    void set(const Mesh&) {}  // a mesh or height field is tried triangle by triangle
+    void set(const HeightField3&) {}
     void set_revolved(double bottom, double top, double height);
     void find_faces();
     double polyhedron_height(const Vec3& p) const;

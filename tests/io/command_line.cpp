@@ -194,6 +194,15 @@ TEST(CommandLine, a_failed_run_leaves_the_file_that_was_there) {
     EXPECT_NE(file_text(trace), "precious");
 }
 
+TEST(CommandLine, a_trace_to_the_standard_output_stands_before_the_summary) {
+    const TestFolder folder;
+    const std::string scene = folder.write("scene.json", falling_2);
+    const auto lines = lines_of(carom(folder, "run " + scene + " --steps 1 --trace /dev/stdout").out);
+    ASSERT_GT(lines.size(), 8u);
+    EXPECT_EQ(lines[0], "step,time,body,x,y,angle,vx,vy,w");
+    EXPECT_EQ(lines[7], "fall (2D)");
+}
+
 TEST(CommandLine, a_link_is_followed) {
     const TestFolder folder;
     const std::string scene = folder.write("scene.json", falling_2), trace = folder.write("t.csv", "");

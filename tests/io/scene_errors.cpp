@@ -120,22 +120,69 @@ TEST(SceneErrors, bodies) {
     });
 }
 
+/// A scene with a fixed body of one shape of these entries, and the material "ice".
+std::string ground_text(int dimension, const std::string& entries) {
+    return scene_text(dimension,
+                      "\"materials\": {\"ice\": {\"friction\": 0.1}}, \"bodies\": [{\"type\": \"fixed\", "
+                      "\"shapes\": [{" +
+                          entries + "}]}]");
+}
+
+TEST(SceneErrors, ground) {
+    const std::string cells = "\"type\": \"height_field\", \"heights\": ";
+    const std::string corners =
+        "\"type\": \"mesh\", \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 0, 1]], \"triangles\": ";
+    const std::string line = "\"type\": \"chain\", \"points\": [[0, 0], [1, 0], [2, 1]]";
+    expect_refused({
+        {ground_text(2, "\"type\": \"chain\""), "bodies[0].shapes[0]: \"points\" is missing"},
+        {ground_text(2, "\"type\": \"chain\", \"points\": [[0, 0]]"),
+         "bodies[0].shapes[0].points: 1 are fewer than 2"},
+        {ground_text(2, line + ", \"loop\": 1"), "bodies[0].shapes[0].loop: 1 is neither true nor false"},
+        {ground_text(2, line + ", \"materials\": [\"snow\"]"),
+         "bodies[0].shapes[0].materials[0]: \"snow\" is not a material of this scene"},
+        {ground_text(2, line + ", \"materials\": [\"ice\"]"),
+         "bodies[0].shapes[0].material_of: has 0 entries for 2 segments"},
+        {ground_text(2, line + ", \"materials\": [\"ice\"], \"material_of\": [0, 70000]"),
+         "bodies[0].shapes[0].material_of[1]: 70000 is more than 65535"},
+        {body_text(2, "\"shapes\": [{" + line + "}]"),
+         "bodies[0].shapes[0].geometry: a chain, mesh or height field needs a fixed or kinematic body"},
+        {ground_text(3, "\"type\": \"mesh\""), "bodies[0].shapes[0].vertices: 0 are fewer than 3"},
+        {ground_text(3, corners + "[[0, 1]]"),
+         "bodies[0].shapes[0].triangles[0]: [0, 1] is not a list of 3 indices of vertices"},
+        {ground_text(3, corners + "[[0, 1, -1]]"), "bodies[0].shapes[0].triangles[0][2]: -1 is not a whole"},
+        {ground_text(3, corners + "[[0, 1, 3]]"),
+         "bodies[0].shapes[0].triangles[0]: 3 is not the index of one of the 3 vertices"},
+        {ground_text(3, corners + "[[0, 1, 2]], \"file\": \"a.obj\""),
+         "bodies[0].shapes[0].file: \"a.obj\" stands beside"},
+        {ground_text(3, "\"type\": \"mesh\", \"file\": \"none.obj\""),
+         "bodies[0].shapes[0].file: none.obj: "},
+        {ground_text(2, cells + "[0, 1]"), "bodies[0].shapes[0]: \"spacing\" is missing"},
+        {ground_text(2, cells + "[0, \"1\"], \"spacing\": 1"),
+         "bodies[0].shapes[0].heights[1]: \"1\" is not a number"},
+        {ground_text(2, cells + "[0, null], \"spacing\": 1"),
+         "bodies[0].shapes[0].heights: all cells are holes"},
+        {ground_text(2, cells + "[0, 1], \"spacing\": [1]"),
+         "bodies[0].shapes[0].spacing: [1] is not a number"},
+        {ground_text(3, cells + "[[0, 1], [0]], \"spacing\": 1"),
+         "bodies[0].shapes[0].heights[1]: has 1 heights, the first row has 2"},
+        {ground_text(3, cells + "[[0, 1], [0, 1]], \"spacing\": [1, 0]"),
+         "bodies[0].shapes[0].spacing[1]: 0 is not positive"},
+        {ground_text(3, cells + "[[0, 1], [0, 1]], \"spacing\": [1, 1, 1]"),
+         "bodies[0].shapes[0].spacing: [1, 1, 1] is neither a number nor a list of 2 numbers"},
+    });
+}
+
 TEST(SceneErrors, shapes) {
     expect_refused({
         {shape_text(2, "\"radius\": 1"), "bodies[0].shapes[0]: \"type\" is missing"},
         {shape_text(2, "\"type\": \"bal\", \"radius\": 1"),
          "bodies[0].shapes[0].type: \"bal\" is not known (did you mean \"ball\"?); allowed are ball, box, "
          "capsule, "
-         "hull, plane"},
+         "hull, plane, chain, height_field"},
         {shape_text(2, "\"type\": \"cylinder\", \"radius\": 1, \"height\": 1"),
          "bodies[0].shapes[0].type: \"cylinder\" exists in 3D only; allowed in 2D are ball"},
-        {shape_text(3, "\"type\": \"mesh\""),
-         "bodies[0].shapes[0].type: \"mesh\" is not supported by this version; allowed are ball, box, "
-         "capsule, hull, "
-         "cylinder, cone, plane"},
-        {shape_text(2, "\"type\": \"chain\""), "bodies[0].shapes[0].type: \"chain\" is not supported"},
-        {shape_text(2, "\"type\": \"height_field\""),
-         "bodies[0].shapes[0].type: \"height_field\" is not supported"},
+        {shape_text(3, "\"type\": \"chain\""), "bodies[0].shapes[0].type: \"chain\" exists in 2D only"},
+        {shape_text(2, "\"type\": \"mesh\""), "bodies[0].shapes[0].type: \"mesh\" exists in 3D only"},
         {shape_text(2, "\"type\": \"ball\""), "bodies[0].shapes[0]: \"radius\" is missing"},
         {shape_text(2, "\"type\": \"ball\", \"raduis\": 1"),
          "bodies[0].shapes[0].raduis: this key is not known (did you mean \"radius\"?)"},

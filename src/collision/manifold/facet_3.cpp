@@ -163,6 +163,7 @@ void find_facet(const Shape<3>& shape, const Vec3& direction, Facet3& facet) {
         case ShapeKind::box:
             return box_facet(shape, direction, facet);
         case ShapeKind::hull:
+        case ShapeKind::facet:
             return hull_facet(shape, direction, facet);
         case ShapeKind::cylinder:
             return cylinder_facet(shape, direction, facet);
@@ -170,6 +171,8 @@ void find_facet(const Shape<3>& shape, const Vec3& direction, Facet3& facet) {
             return cone_facet(shape, direction, facet);
         case ShapeKind::plane:
             return plane_facet(shape, facet);
+        case ShapeKind::terrain:  // meets others facet by facet
+            return;
     }
 }
 

@@ -129,8 +129,8 @@ Outline::Outline(const Shape<2>& shape, const Transform<2>& placed) : placed_(pl
     few_corners_ = {shape.a, shape.b};
     const Vec2 along = normalized(shape.b - shape.a);
     few_normals_ = {Vec2{along.y, -along.x}, Vec2{-along.y, along.x}};
-    const bool segment = shape.kind == ShapeKind::capsule && length_squared(along) > 0;
-    corners_ = std::span(few_corners_).first(segment ? 2 : 1);
+    const bool point = shape.kind == ShapeKind::ball || length_squared(along) == 0;
+    corners_ = std::span(few_corners_).first(point ? 1 : 2);
     normals_ = few_normals_;
 }
 
@@ -188,6 +188,28 @@ Proximity proximity(const Outline& a, const Outline& b) {
     }
     result.axis = axis;
     set_overlapping(result, front, facing, other, front_is_a);
+    return result;
+}
+
+Proximity front_depth(const Outline& a, const Outline& b, double slack) {
+    Proximity result;
+    const Vec2 front = a.normal(0);
+    const int lowest = b.furthest(-front);
+    result.face_a = {dot(front, b.corner(lowest) - a.corner(0)), 0, lowest};
+    result.face_b = {-infinity, 0, 0};
+    for (int edge = 0; b.has_edges() && edge < b.count(); ++edge) {
+        const Vec2 normal = b.normal(edge);
+        if (dot(normal, front) > slack) continue;
+        const int corner = a.furthest(-normal);
+        const double separation = dot(normal, a.corner(corner) - b.corner(edge));
+        if (separation > result.face_b.separation) result.face_b = {separation, edge, corner};
+    }
+    const bool front_is_a = result.face_a.separation >= result.face_b.separation;
+    result.axis = front_is_a ? front : -b.normal(result.face_b.edge);
+    if (front_is_a)
+        set_overlapping(result, a, result.face_a, b, true);
+    else
+        set_overlapping(result, b, result.face_b, a, false);
     return result;
 }
 

@@ -8,8 +8,8 @@
 namespace carom::detail {
 
 /// The core of a 2D shape as a closed chain of corners, counter-clockwise, in the frame in which it is
-/// placed: one corner for a ball; two, with an edge there and an edge back, for a capsule; a polygon for a
-/// box or hull.
+/// placed: one corner for a ball; two, with an edge there and an edge back, for a capsule or a facet, whose
+/// front is edge 0; a polygon for a box or hull.
 class Outline {
   public:
     Outline(const Shape<2>& shape, const Transform<2>& placed);
@@ -61,6 +61,13 @@ struct Proximity {
 
 /// Exact distance or depth of two cores. Rounding by their radii adds to it and leaves the axis as it is.
 Proximity proximity(const Outline& a, const Outline& b);
+
+/// The depth of two cores that overlap if the outline `a`, a segment, can be left only on the side of the
+/// normal of its edge 0. Directions up to `slack` behind that count as well.
+Proximity front_depth(const Outline& a, const Outline& b, double slack);
+
+/// The manifold of two outlines: one point or two.
+Manifold<2> touching(const Outline& a, const Outline& b, const Proximity& near, double reach);
 
 /// The edge that runs most against the direction of `normal`, of the two that meet at the corner.
 int facing_edge(const Outline& outline, int corner, const Vec2& normal);

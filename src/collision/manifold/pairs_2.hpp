@@ -9,10 +9,8 @@ namespace carom::detail {
 /// Ball, capsule, box or hull against any of these.
 std::optional<Separation<2>> separate_outlines(const Shape<2>& a, const Shape<2>& b,
                                                const Transform<2>& b_in_a);
-/// A ball against ball, capsule, box or hull: one point.
-Manifold<2> collide_ball(const Shape<2>& ball, const Shape<2>& b, const Transform<2>& b_in_a, double reach);
-/// Capsule, box or hull against any of these: one point or two.
-Manifold<2> collide_polygons(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach);
+/// Ball, capsule, box or hull against any of these: one point or two.
+Manifold<2> collide_outlines(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach);
 /// Ball, capsule, box or hull against a plane.
 std::optional<Separation<2>> separate_from_plane(const Shape<2>& a, const Shape<2>& plane,
                                                  const Transform<2>& plane_in_a);

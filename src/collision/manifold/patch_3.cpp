@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "collision/manifold/reduce.hpp"
+
 namespace carom::detail {
 
 namespace {
@@ -115,100 +117,6 @@ bool lies_over(const Facet3& disk, const Facet3& base) {
     return true;
 }
 
-/// Lets points that coincide within `snap` be one, and gives those that are left names of their own (two
-/// sides that lie along each other cross twice, within the snap).
-void merge(Points& points, double snap) {
-    std::size_t count = 0;
-    for (const ManifoldPoint<3>& point : points) {
-        const auto end = points.begin() + static_cast<std::ptrdiff_t>(count);
-        const auto same = std::find_if(points.begin(), end, [&](const ManifoldPoint<3>& other) {
-            return length_squared(other.position - point.position) <= snap * snap;
-        });
-        if (same == end) {
-            points[count++] = point;
-        } else if (point.separation < same->separation) {
-            same->position = point.position;
-            same->separation = point.separation;
-        }
-    }
-    points.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            if (points[j].feature == points[i].feature) points[i].feature += 0x80;
-        }
-    }
-}
-
-/// The index of the point of greatest measure; the first of those that are nearly as great.
-template <class Measure>
-int greatest(const Points& points, const Measure& measure) {
-    double low = 1e300, high = -1e300;
-    for (const ManifoldPoint<3>& point : points) {
-        low = std::min(low, measure(point));
-        high = std::max(high, measure(point));
-    }
-    const auto first = std::find_if(points.begin(), points.end(), [&](const ManifoldPoint<3>& point) {
-        return measure(point) >= high - 1e-3 * (high - low);
-    });
-    return first == points.end() ? 0 : static_cast<int>(first - points.begin());
-}
-
-/// Picks four points that keep the area of all, the deepest among them. The choice begins at a fixed
-/// direction, not at the deepest point, which changes from step to step when all are nearly equally deep.
-std::array<int, 4> pick_four(const Points& points, const Vec3& normal) {
-    const Vec3 across = any_perpendicular(normal);
-    const auto at = [&](int i) { return points[static_cast<std::size_t>(i)].position; };
-    const auto area = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-        return dot(normal, cross(q - p, r - p));
-    };
-
-    std::array<int, 4> chosen{};
-    chosen[0] = greatest(points, [&](const auto& p) { return dot(across, p.position - at(0)); });
-    const Vec3 first = at(chosen[0]);
-    chosen[1] = greatest(points, [&](const auto& p) { return length_squared(p.position - first); });
-    const Vec3 second = at(chosen[1]);
-    chosen[2] = greatest(points, [&](const auto& p) { return std::fabs(area(first, second, p.position)); });
-    Vec3 third = at(chosen[2]), turn = second;
-    if (area(first, second, third) < 0) std::swap(third, turn);
-    chosen[3] = greatest(points, [&](const auto& p) {
-        return -std::min(
-            {area(first, turn, p.position), area(turn, third, p.position), area(third, first, p.position)});
-    });
-
-    int deepest = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        if (points[i].separation < points[static_cast<std::size_t>(deepest)].separation)
-            deepest = static_cast<int>(i);
-    }
-    const auto separation = [&](int i) { return points[static_cast<std::size_t>(i)].separation; };
-    const int lowest = *std::min_element(chosen.begin(), chosen.end(),
-                                         [&](int i, int j) { return separation(i) < separation(j); });
-    if (separation(deepest) < separation(lowest) - 0.01 * std::fabs(separation(deepest))) {
-        *std::min_element(chosen.begin(), chosen.end(), [&](int i, int j) {
-            return length_squared(at(i) - at(deepest)) < length_squared(at(j) - at(deepest));
-        }) = deepest;
-    }
-    std::sort(chosen.begin(), chosen.end());
-    return chosen;
-}
-
-Manifold<3> manifold_of(const Points& points, const Vec3& normal) {
-    Manifold<3> manifold;
-    manifold.normal = normal;
-    if (points.size() <= 4) {
-        for (const ManifoldPoint<3>& point : points)
-            manifold.points[static_cast<std::size_t>(manifold.count++)] = point;
-        return manifold;
-    }
-    const std::array<int, 4> chosen = pick_four(points, normal);
-    for (std::size_t i = 0; i < 4; ++i) {
-        if (i > 0 && chosen[i] == chosen[i - 1]) continue;
-        manifold.points[static_cast<std::size_t>(manifold.count++)] =
-            points[static_cast<std::size_t>(chosen[i])];
-    }
-    return manifold;
-}
-
 /// The area over one of the two faces, or nothing when that face is not where the shapes are nearest.
 bool face_patch(const Meeting& meeting, bool base_is_b, double reach, Manifold<3>& manifold) {
     const Facet3& base = base_is_b ? meeting.b : meeting.a;
@@ -243,8 +151,8 @@ bool face_patch(const Meeting& meeting, bool base_is_b, double reach, Manifold<3
             {p + (0.5 * (lift - gap)) * base.normal, gap - radii, feature_of(meeting, before, after)});
     }
     if (points.empty() || !meeting.confirms(least)) return false;
-    merge(points, snap);
-    manifold = manifold_of(points, base_is_b ? -base.normal : base.normal);
+    points.resize(merge_points<3>(points, snap));
+    manifold = manifold_of<3>(points, base_is_b ? -base.normal : base.normal);
     return true;
 }
 
@@ -326,7 +234,8 @@ double facing(const Facet3& facet, const Vec3& direction) {
 }  // namespace
 
 std::optional<Manifold<3>> contact_patch(const Pair3& pair, const Nearest3& nearest, double reach) {
-    if (pair.a.kind == ShapeKind::ball) return single_point(pair, nearest, reach);
+    if (pair.a.kind == ShapeKind::ball || pair.b.kind == ShapeKind::ball)
+        return single_point(pair, nearest, reach);
 
     Memory memory;
     Facet3 a(memory.resource), b(memory.resource);

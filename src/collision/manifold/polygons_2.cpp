@@ -89,25 +89,21 @@ std::optional<Separation<2>> separate_outlines(const Shape<2>& a, const Shape<2>
     return Separation<2>{near.axis, near.distance - first.radius() - second.radius()};
 }
 
-Manifold<2> collide_ball(const Shape<2>& ball, const Shape<2>& b, const Transform<2>& b_in_a, double reach) {
-    const Outline first(ball, {}), second(b, b_in_a);
-    const Proximity near = proximity(first, second);
-    if (near.distance - first.radius() - second.radius() > reach) return {};
-    // A ball has nothing but itself to touch with; its contact lives on while it rolls from edge to edge.
-    return single_point(near, first, second, 0);
+Manifold<2> collide_outlines(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach) {
+    const Outline first(a, {}), second(b, b_in_a);
+    return touching(first, second, proximity(first, second), reach);
 }
 
-Manifold<2> collide_polygons(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach) {
-    const Outline first(a, {}), second(b, b_in_a);
-    const Proximity near = proximity(first, second);
+Manifold<2> touching(const Outline& first, const Outline& second, const Proximity& near, double reach) {
     const double rounding = first.radius() + second.radius();
     if (near.distance - rounding > reach) return {};
+    // A ball has nothing but itself to touch with; its contact lives on while it rolls from edge to edge.
+    if (!first.has_edges() || !second.has_edges()) return single_point(near, first, second, 0);
 
     const bool a_leads = edge_of_a_leads(first, second, near);
     const Outline& leader = a_leads ? first : second;
     const Outline& other = a_leads ? second : first;
     std::uint32_t feature = feature_id(near.corner_a, near.corner_b);
-    if (!leader.has_edges()) return single_point(near, first, second, feature);
 
     const Overlap overlap = clip(leader, a_leads ? near.face_a : near.face_b, other);
     Manifold<2> result;

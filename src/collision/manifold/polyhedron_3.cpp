@@ -152,12 +152,14 @@ double core_extent(const Shape<3>& shape) {
         case ShapeKind::box:
             return length(shape.b);
         case ShapeKind::hull:
+        case ShapeKind::facet:
             return length(shape.core->vertices.back() - shape.core->vertices.front());
         case ShapeKind::cylinder:
         case ShapeKind::cone:
             return shape.radius + shape.half_height;
         case ShapeKind::ball:
         case ShapeKind::plane:
+        case ShapeKind::terrain:
             return 0;
     }
     return 0;

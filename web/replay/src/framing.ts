@@ -29,7 +29,14 @@ function support(shape: Shape, direction: Vector): number {
             return shape.type === "cylinder" ? across + Math.abs(along) : Math.max(across - along, along);
         }
         case "plane": return Infinity;
+        case "chain": return furthest(shape.points, (p) => dot(p, direction));
+        case "mesh": return furthest(shape.vertices, (p) => dot(p, direction));
     }
+}
+
+/** The greatest measure of a list of points, of which there may be very many. */
+function furthest(points: Vector[], measure: (point: Vector) => number): number {
+    return points.reduce((most, point) => Math.max(most, measure(point)), -Infinity);
 }
 
 /** The bounds of a body in a frame, along each axis. */
@@ -69,6 +76,8 @@ function reach(body: Body, shape: Shape): number {
         case "cylinder":
         case "cone": return away + Math.hypot(shape.radius, shape.height / 2);
         case "plane": return Infinity;
+        case "chain": return away + furthest(shape.points, length);
+        case "mesh": return away + furthest(shape.vertices, length);
     }
 }
 

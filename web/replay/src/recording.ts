@@ -9,6 +9,8 @@ export type Shape = { center: Vector; angle?: number; rotation?: Vector; materia
     | { type: "hull"; points: Vector[]; faces?: number[][]; rounding: number }
     | { type: "cylinder" | "cone"; radius: number; height: number }
     | { type: "plane"; normal: Vector; offset: number }
+    | { type: "chain"; points: Vector[]; segments: number[][]; two_sided: boolean }
+    | { type: "mesh"; vertices: Vector[]; triangles: number[][]; two_sided: boolean }
 );
 
 export interface Body {

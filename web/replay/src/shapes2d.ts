@@ -41,8 +41,35 @@ function localPath(shape: Shape): Path2D | null {
         case "hull":
             roundedPolygon(path, shape.points, shape.rounding);
             return path;
+        case "chain":
+            segments(path, shape.points, shape.segments, shape.two_sided);
+            return path;
         default:
             return null;
+    }
+}
+
+/** Lines alone, without an area: the segments and, unless they are two-sided, strokes into the solid, which is
+ *  to the right of their direction. */
+function segments(path: Path2D, points: Vector[], corners: number[][], twoSided: boolean) {
+    const size = (axis: number) =>
+        points.reduce((most, p) => Math.max(most, p[axis]), -Infinity) - points.reduce((least, p) => Math.min(least, p[axis]), Infinity);
+    const whole = corners.reduce((sum, [i, j]) => sum + Math.hypot(points[j][0] - points[i][0], points[j][1] - points[i][1]), 0);
+    const spacing = Math.max(Math.hypot(size(0), size(1)) / 120, whole / 2000);
+    let next = spacing / 2;
+    for (const [i, j] of corners) {
+        const [from, to] = [points[i], points[j]];
+        path.moveTo(from[0], from[1]);
+        path.lineTo(to[0], to[1]);
+        if (twoSided) continue;
+        const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+        const along = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+        for (; next < length; next += spacing) {
+            const foot = [from[0] + next * along[0], from[1] + next * along[1]];
+            path.moveTo(foot[0], foot[1]);
+            path.lineTo(foot[0] + 0.6 * spacing * (along[1] - along[0]), foot[1] - 0.6 * spacing * (along[0] + along[1]));
+        }
+        next -= length;
     }
 }
 

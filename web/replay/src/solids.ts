@@ -210,7 +210,21 @@ function boxCorners(size: Vector): Vector[] {
         size.map((length, axis) => ((i >> axis) & 1 ? 1 : -1) * (length / 2)));
 }
 
-/** Null for planes, which have no end. */
+/** Any surface of triangles, each flat; from behind too if it is two-sided. */
+function mesh(vertices: Vector[], corners: number[][], twoSided: boolean): BufferGeometry {
+    const triangles = new Triangles();
+    for (const [i, j, k] of corners) {
+        const places = [i, j, k].map((corner) => new Vector3(...vertices[corner]));
+        triangles.face(places, false);
+        if (twoSided) triangles.face([places[0], places[2], places[1]], false);
+    }
+    return triangles.finish();
+}
+
+/** Meshes are never alike, and too large to be compared. */
+let meshes = 0;
+
+/** Null for planes, which have no end, and for lines. */
 export function solidOf(shape: Shape): Solid | null {
     const scaled = (x: number, y: number, z: number) => new Matrix4().makeScale(x, y, z);
     switch (shape.type) {
@@ -241,7 +255,12 @@ export function solidOf(shape: Shape): Solid | null {
             const { points, faces = [], rounding } = shape;
             return { key: `hull ${JSON.stringify(points)} ${rounding}`, build: () => hull(points, faces, rounding), place: new Matrix4() };
         }
+        case "mesh": {
+            const { vertices, triangles, two_sided } = shape;
+            return { key: `mesh ${++meshes}`, build: () => mesh(vertices, triangles, two_sided), place: new Matrix4() };
+        }
         case "plane":
+        case "chain":
             return null;
     }
 }

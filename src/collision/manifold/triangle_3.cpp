@@ -1,0 +1,295 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/facet.hpp"
+#include "collision/manifold/patch_3.hpp"
+
+namespace carom::detail {
+
+namespace {
+
+/// An edge of the triangle, and an arc of normals round it: from the front (or the edge's own side) on the
+/// left to its side (or the back) on the right. See `Polyhedron::Edge`.
+struct Arc {
+    Vec3 start, along, left, right;
+};
+
+/// A triangle in the frame of the shape that it meets, also as a flat polyhedron.
+class Triangle {
+  public:
+    /// The triangle as a shape is made anew in the same place each time, so that nothing is allocated.
+    Triangle(const Facet<3>& facet, const Transform3& placed) : two_sided(facet.two_sided) {
+        thread_local const std::shared_ptr<Polyhedron> core = std::make_shared<Polyhedron>();
+        core->vertices.clear();
+        for (const Vec3& p : facet.points) core->vertices.push_back(apply_inverse(placed, p));
+        const std::vector<Vec3>& v = core->vertices;
+        normal = unrotate(placed.rotation, facet.normal());
+        core->normals.assign({normal});
+        core->offsets.assign({dot(normal, v[0])});
+        core->indices.assign({0, 1, 2});
+        core->first.assign({0, 3});
+        if (two_sided) {
+            core->normals.push_back(-normal);
+            core->offsets.push_back(-core->offsets[0]);
+            core->indices.insert(core->indices.end(), {0, 2, 1});
+            core->first.push_back(6);
+        }
+        shape.kind = ShapeKind::facet;
+        shape.a = (v[0] + v[1] + v[2]) / 3;
+        shape.core = core;
+    }
+
+    const Vec3& corner(std::size_t i) const { return shape.core->vertices[i % 3]; }
+    double height(const Vec3& p) const { return dot(normal, p) - shape.core->offsets[0]; }
+    /// Out of the triangle across the edge from corner i on.
+    Vec3 side(std::size_t i) const { return normalized(cross(corner(i + 1) - corner(i), normal)); }
+    bool looks_back(const Vec3& n) const { return !two_sided && dot(n, normal) < -backward_slack; }
+
+    /// The arcs between front and side, and a little further; those between side and back.
+    Arc front_arc(std::size_t i) const {
+        return {corner(i), corner(i + 1) - corner(i), normal, side(i) - backward_slack * normal};
+    }
+    Arc back_arc(std::size_t i) const {
+        return {corner(i), corner(i + 1) - corner(i), side(i) + backward_slack * normal, -normal};
+    }
+
+    bool two_sided;
+    Vec3 normal;
+    Shape<3> shape;
+};
+
+/// The widest gap found so far, and what is only known to part the two.
+class Widest {
+  public:
+    explicit Widest(const Triangle& triangle) : triangle_(triangle) {
+        best_.distance = -std::numeric_limits<double>::infinity();
+    }
+
+    void offer(const Nearest3& candidate, double advantage = 0) {
+        if (triangle_.looks_back(candidate.normal)) {
+            // Shapes that are apart do not overlap, even if what parts them is not a way out.
+            if (candidate.distance > 0) parted_ = candidate;
+        } else if (candidate.distance > best_.distance + advantage) {
+            best_ = candidate;
+        }
+    }
+    double distance() const { return best_.distance; }
+    Nearest3 result() const {
+        if (best_.distance > 0 || !(parted_.distance > 0)) return best_;
+        Nearest3 parted = parted_;
+        parted.certain = false;
+        return parted;
+    }
+
+  private:
+    const Triangle& triangle_;
+    Nearest3 best_, parted_;
+};
+
+/// The gap across an edge of the triangle and an edge of the other shape that makes a pair with it.
+Nearest3 across(const Arc& arc, const Vec3& start, const Vec3& along) {
+    Nearest3 nothing;
+    nothing.distance = -std::numeric_limits<double>::infinity();
+    Vec3 normal = cross(arc.along, along);
+    const double size = length(normal);
+    if (size <= 1e-8 * length(arc.along) * length(along)) return nothing;
+    normal = normal / (dot(normal, arc.left + arc.right) < 0 ? -size : size);
+    const double gap = dot(normal, start - arc.start);
+    const SegmentPoints at = closest_on_segments(arc.start, arc.along, start, along);
+    const bool inside = at.s > 0 && at.s < 1 && at.t > 0 && at.t < 1;
+    return {normal, gap, arc.start + at.s * arc.along, start + at.t * along, gap <= 0 || inside};
+}
+
+Nearest3 triangle_point(const Triangle& triangle, const Vec3& p) {
+    const double height = triangle.height(p);
+    std::array<bool, 3> outside;
+    for (std::size_t i = 0; i < 3; ++i)
+        outside[i] = dot(cross(triangle.corner(i + 1) - triangle.corner(i), triangle.normal),
+                         p - triangle.corner(i)) > 0;
+    if (!outside[0] && !outside[1] && !outside[2]) {
+        const Vec3 normal = height < 0 ? -triangle.normal : triangle.normal;
+        return {normal, std::fabs(height), p - height * triangle.normal, p};
+    }
+    Vec3 closest{};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!outside[i]) continue;
+        const Vec3 along = triangle.corner(i + 1) - triangle.corner(i);
+        const double share = std::clamp(dot(p - triangle.corner(i), along) / length_squared(along), 0.0, 1.0);
+        const Vec3 q = triangle.corner(i) + share * along;
+        if (length_squared(p - q) >= least) continue;
+        least = length_squared(p - q);
+        closest = q;
+    }
+    // A point on the edge has no direction from it but for rounding.
+    const double distance = std::sqrt(least);
+    const bool touching =
+        distance <= 1e-12 * (length(p) + length(closest)) + 1e-10 * core_extent(triangle.shape);
+    const Vec3 normal = touching ? triangle.normal : (p - closest) / distance;
+    return {normal, distance, closest, p};
+}
+
+Nearest3 triangle_segment(const Triangle& triangle, const Shape<3>& capsule, const Pair3& pair,
+                          const Search3& search) {
+    const Vec3 &from = capsule.a, &to = capsule.b, along = to - from;
+    Widest widest(triangle);
+    for (const double side : {1.0, -1.0}) {
+        const double at_from = side * triangle.height(from), at_to = side * triangle.height(to);
+        const Vec3& lower = at_from <= at_to ? from : to;
+        const double gap = std::min(at_from, at_to);
+        widest.offer({side * triangle.normal, gap, lower - side * gap * triangle.normal, lower, false});
+    }
+    if (widest.distance() > search.limit) return widest.result();
+    const double favoured = advantage(pair, search, widest.distance(), length(along));
+    Widest of_edges(triangle);
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (const Arc& arc : {triangle.front_arc(i), triangle.back_arc(i)}) {
+            if (dot(along, arc.left) * dot(along, arc.right) < 0) of_edges.offer(across(arc, from, along));
+        }
+    }
+    widest.offer(of_edges.result(), favoured);
+    return widest.result();
+}
+
+/// Along the triangle's normals.
+void offer_normals(Widest& widest, const Triangle& triangle, const Polyhedron& core) {
+    std::size_t lowest = 0, highest = 0;
+    for (std::size_t i = 1; i < core.vertices.size(); ++i) {
+        const double height = dot(triangle.normal, core.vertices[i]);
+        if (height < dot(triangle.normal, core.vertices[lowest])) lowest = i;
+        if (height > dot(triangle.normal, core.vertices[highest])) highest = i;
+    }
+    const Vec3 &low = core.vertices[lowest], &high = core.vertices[highest];
+    const double above = triangle.height(low), below = -triangle.height(high);
+    widest.offer({triangle.normal, above, low - above * triangle.normal, low, false});
+    widest.offer({-triangle.normal, below, high + below * triangle.normal, high, false});
+}
+
+/// Along the normals of the polyhedron's faces.
+void offer_faces(Widest& widest, const Triangle& triangle, const Polyhedron& core) {
+    for (std::size_t f = 0; f < core.normals.size(); ++f) {
+        const Vec3& n = core.normals[f];
+        std::size_t deepest = 0;
+        for (std::size_t i = 1; i < 3; ++i)
+            if (dot(n, triangle.corner(i)) < dot(n, triangle.corner(deepest))) deepest = i;
+        const double gap = dot(n, triangle.corner(deepest)) - core.offsets[f];
+        widest.offer({-n, gap, triangle.corner(deepest), triangle.corner(deepest) - gap * n, false});
+    }
+}
+
+/// Across edges of both whose arcs of the Gauss map cross (see `polyhedron_polyhedron`).
+void offer_edges(Widest& widest, const std::array<Arc, 3>& arcs, const Polyhedron& core) {
+    for (const Polyhedron::Edge& edge : core.edges) {
+        const Vec3 &left = core.normals[edge.left], &right = core.normals[edge.right];
+        const Vec3& start = core.vertices[edge.from];
+        const Vec3 along = core.vertices[edge.to] - start;
+        for (const Arc& arc : arcs) {
+            const double left_of = dot(left, arc.along);
+            if (left_of * dot(right, arc.along) >= 0) continue;
+            const double right_of = dot(arc.right, along);
+            if (dot(arc.left, along) * right_of >= 0 || left_of * right_of >= 0) continue;
+            widest.offer(across(arc, start, along));
+        }
+    }
+}
+
+Nearest3 triangle_polyhedron(const Triangle& triangle, const Shape<3>& shape, const Pair3& pair,
+                             const Search3& search) {
+    const Polyhedron& core = *shape.core;
+    const double extent = std::min(core_extent(pair.a), core_extent(shape));
+    const auto favoured = [&](const Widest& so_far) {
+        return advantage(pair, search, so_far.distance(), extent);
+    };
+    Widest widest(triangle), of_faces(triangle), of_edges(triangle);
+    offer_normals(widest, triangle, core);
+    if (widest.distance() > search.limit) return widest.result();
+    offer_faces(of_faces, triangle, core);
+    widest.offer(of_faces.result(), favoured(widest));
+    if (widest.result().distance > search.limit) return widest.result();
+    offer_edges(of_edges, {triangle.front_arc(0), triangle.front_arc(1), triangle.front_arc(2)}, core);
+    if (triangle.two_sided || std::max(widest.distance(), of_edges.distance()) <= 0)
+        offer_edges(of_edges, {triangle.back_arc(0), triangle.back_arc(1), triangle.back_arc(2)}, core);
+    widest.offer(of_edges.result(), favoured(widest));
+    return widest.result();
+}
+
+/// Cylinder and cone. Where the shortest way out leads backwards, the likely ones that do not are compared.
+Nearest3 triangle_revolved(const Triangle& triangle, const Shape<3>& shape, const Pair3& pair,
+                           const Search3& search) {
+    const Nearest3 free = core_revolved(pair, search);
+    if (free.distance > 0 || !triangle.looks_back(free.normal)) return free;
+    Widest widest(triangle);
+    const auto offer = [&](const Vec3& direction) {
+        if (length_squared(direction) <= 1e-12) return;
+        widest.offer(gap_along(pair, normalized(direction)));
+        widest.offer(gap_along(pair, -normalized(direction)));
+    };
+    widest.offer(gap_along(pair, triangle.normal));
+    offer(shape.b);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 along = triangle.corner(i + 1) - triangle.corner(i);
+        const Vec3 from_middle = triangle.corner(i) - shape.a;
+        offer(triangle.side(i));
+        offer(cross(along, shape.b));
+        offer(from_middle - dot(from_middle, shape.b) * shape.b);
+    }
+    Nearest3 result = widest.result();
+    result.certain = false;
+    return result;
+}
+
+Nearest3 nearest_to(const Triangle& triangle, const Pair3& pair, const Search3& search) {
+    switch (pair.b.kind) {
+        case ShapeKind::ball:
+            return triangle_point(triangle, pair.b.a);
+        case ShapeKind::capsule:
+            return triangle_segment(triangle, pair.b, pair, search);
+        case ShapeKind::cylinder:
+        case ShapeKind::cone:
+            return triangle_revolved(triangle, pair.b, pair, search);
+        default:
+            return triangle_polyhedron(triangle, pair.b, pair, search);
+    }
+}
+
+bool is_behind(const Triangle& triangle, const Shape<3>& convex) {
+    return !triangle.two_sided && triangle.height(middle_of(convex)) < 0;
+}
+
+}  // namespace
+
+template <>
+Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const Transform<3>& placed,
+                          double reach) {
+    const Triangle triangle(facet, placed);
+    if (is_behind(triangle, convex)) return {};
+    const Transform3 here{};
+    const Pair3 pair{triangle.shape, convex, here};
+    const double limit = reach + core_radius(convex);
+    Nearest3 found = nearest_to(triangle, pair, {limit, true});
+    if (found.distance > limit) return {};
+    std::optional<Manifold<3>> patch;
+    if (!triangle.looks_back(found.normal)) patch = contact_patch(pair, found, reach);
+    if (!patch) {
+        found = made_certain(pair, nearest_to(triangle, pair, {limit, false}));
+        if (found.distance > limit || triangle.looks_back(found.normal)) return {};
+        patch = contact_patch(pair, found, reach);
+    }
+    return triangle.looks_back(patch->normal) ? Manifold<3>{} : moved(*patch, placed);
+}
+
+template <>
+std::optional<Separation<3>> separate_facet(const Shape<3>& convex, const Facet<3>& facet,
+                                            const Transform<3>& placed) {
+    const Triangle triangle(facet, placed);
+    if (is_behind(triangle, convex)) return std::nullopt;
+    const Transform3 here{};
+    const Pair3 pair{triangle.shape, convex, here};
+    Nearest3 found = nearest_to(triangle, pair, {std::numeric_limits<double>::infinity(), false});
+    if (found.distance > 0) found = made_certain(pair, found);
+    if (triangle.looks_back(found.normal)) return std::nullopt;
+    return Separation<3>{rotate(placed.rotation, found.normal), found.distance - core_radius(convex)};
+}
+
+}  // namespace carom::detail

@@ -1,0 +1,82 @@
+#include "collision/facet.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace carom::detail {
+
+template <int D>
+Vec<D> middle_of(const Shape<D>& convex) {
+    if (convex.kind == ShapeKind::capsule) return 0.5 * (convex.a + convex.b);
+    if (convex.kind != ShapeKind::hull) return convex.a;
+    Vec<D> sum{};
+    for (const Vec<D>& corner : convex.core->vertices) sum += corner;
+    return sum / double(convex.core->vertices.size());
+}
+
+namespace {
+
+/// The facet that is nearest to a shape or overlaps it most.
+template <int D>
+struct NearestFacet {
+    Separation<D> separation;
+    std::uint32_t facet;
+};
+
+/// Looks in larger and larger boxes, until no facet outside could be nearer than the best inside, or none is
+/// nearer than `limit`.
+template <int D>
+std::optional<NearestFacet<D>> nearest_facet(const Shape<D>& convex, const Terrain<D>& terrain,
+                                             const Transform<D>& placed, double limit) {
+    const Aabb<D> own = bounds(convex, placed), whole = terrain.bounds();
+    double extent = 0, furthest = 0;
+    for (int i = 0; i < D; ++i) {
+        extent = std::max(extent, own.upper[i] - own.lower[i]);
+        furthest = std::max({furthest, own.lower[i] - whole.lower[i], whole.upper[i] - own.upper[i]});
+    }
+    std::optional<NearestFacet<D>> best;
+    for (double reach = std::min(extent, limit);; reach = std::min(4 * reach, limit)) {
+        Vec<D> margin{};
+        for (int i = 0; i < D; ++i) margin[i] = reach;
+        best.reset();
+        terrain.query({own.lower - margin, own.upper + margin}, [&](std::uint32_t i) {
+            const auto found = separate_facet(convex, terrain.facet(i), placed);
+            if (found && (!best || found->distance < best->separation.distance)) best = {*found, i};
+        });
+        if (best && best->separation.distance <= reach) return best;
+        if (reach >= furthest || reach >= limit) return best;
+    }
+}
+
+}  // namespace
+
+template <int D>
+Manifold<D> collide_terrain(const Shape<D>& a, const Shape<D>& terrain, const Transform<D>& terrain_in_a,
+                            double reach) {
+    const Transform<D> placed = inverse(terrain_in_a);
+    const auto nearest = nearest_facet(a, *terrain.terrain, placed, reach);
+    if (!nearest) return {};
+    const Facet<D> facet = terrain.terrain->facet(nearest->facet);
+    return exchanged(moved(collide_facet(a, facet, placed, reach), terrain_in_a));
+}
+
+template <int D>
+std::optional<Separation<D>> separate_from_terrain(const Shape<D>& a, const Shape<D>& terrain,
+                                                   const Transform<D>& terrain_in_a) {
+    const auto nearest =
+        nearest_facet(a, *terrain.terrain, inverse(terrain_in_a), std::numeric_limits<double>::infinity());
+    if (!nearest) return std::nullopt;
+    return Separation<D>{-rotate(terrain_in_a.rotation, nearest->separation.axis),
+                         nearest->separation.distance};
+}
+
+template Vec<2> middle_of(const Shape<2>&);
+template Vec<3> middle_of(const Shape<3>&);
+template Manifold<2> collide_terrain(const Shape<2>&, const Shape<2>&, const Transform<2>&, double);
+template Manifold<3> collide_terrain(const Shape<3>&, const Shape<3>&, const Transform<3>&, double);
+template std::optional<Separation<2>> separate_from_terrain(const Shape<2>&, const Shape<2>&,
+                                                            const Transform<2>&);
+template std::optional<Separation<3>> separate_from_terrain(const Shape<3>&, const Shape<3>&,
+                                                            const Transform<3>&);
+
+}  // namespace carom::detail
