@@ -24,8 +24,10 @@ void Solver<D>::find_slots(const SolverInput<D>& input) {
         if (!dynamic) view_.first_movable = static_cast<std::uint32_t>(bodies_.size());
     }
     pairs_.clear();
-    for (const std::uint32_t i : input.active)
-        pairs_.push_back({slot_of_[input.contacts[i].body_a], slot_of_[input.contacts[i].body_b]});
+    for (const std::uint32_t i : input.active) {
+        const std::uint32_t a = input.contacts[i].body_a, b = input.contacts[i].body_b;
+        pairs_.push_back({slot_of_[a], slot_of_[b], pair_key(a, b)});
+    }
     for (const std::uint32_t body : bodies_) slot_of_[body] = 0;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "solver/passes.hpp"
 
 /// From contact records to lanes: records are read by fours of floats, which are transposed.
@@ -10,6 +12,12 @@ template <int D>
 struct RecordReader {
     static constexpr std::size_t stride = sizeof(ContactRecord<D>) / sizeof(float);
     static_assert(sizeof(ContactRecord<D>) % sizeof(float) == 0);
+    // What is read as one four has to lie together.
+    static_assert(offsetof(ContactRecord<D>, rolling) == offsetof(ContactRecord<D>, count) + 12);
+    static_assert(offsetof(ContactRecord<D>, roundness_b) == offsetof(ContactRecord<D>, roundness_a) + 4);
+    static_assert(offsetof(ContactRecordPoint<D>, arm_b) == 4 * D);
+    static_assert(offsetof(ContactRecordPoint<D>, separation) == 8 * D);
+    static_assert(offsetof(ContactRecordPoint<D>, impulse) == 8 * D + 4);
 
     const BlockSource<D>& source;
 

@@ -252,7 +252,6 @@ void World<D>::remove_force(ForceId<D> force) {
 template <int D>
 void World<D>::step(double dt) {
     state_->step(dt);
-    state_->keep_in_boxes(dt);
 }
 
 template <int D>

@@ -79,13 +79,13 @@ void WorldState<D>::refresh_boxes(double dt) {
             ShapeRecord<D>& s = shapes[id.index];
             const Aabb<D> tight = bounds(s.shape, placed);
             const Vec<D> size = tight.upper - tight.lower;
-            double smallest = size.x, largest = size.x;
-            for (int i = 1; i < D; ++i) {
-                smallest = std::min(smallest, size[i]);
-                largest = std::max(largest, size[i]);
-            }
-            // A corner turns by spin · dt, at most once around; gravity may add to the way.
-            const double turning = std::min(spin * dt, 1.0) * std::min(masses[body].radius, largest);
+            double smallest = size.x;
+            for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
+            // A point that turns by an angle about the centre of mass, at the distance r from it, comes no
+            // further than its arc, nor than 2 r. Of a ball only the middle counts.
+            const bool is_ball = s.shape.kind == ShapeKind::ball;
+            const double arm = is_ball ? length(s.shape.a - masses[body].center) : masses[body].radius;
+            const double turning = std::min(spin * dt, 2.0) * arm;
             const double falling = length(definition.gravity) * dt * dt;
             const Aabb<D> swept = grown(tight, turning + falling, way);
             if (s.leaf != Tree<D>::none && contains(moving_tree.box(s.leaf), swept)) continue;

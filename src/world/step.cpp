@@ -55,6 +55,7 @@ void WorldState<D>::step(double dt) {
     move_kinematic_bodies(dt);  // what only the user moves
     stop_at_obstacles();        // nothing passes through what stands still
     finish_bodies();            // quarantine, list of moved bodies
+    keep_in_boxes(dt);          // queries find the bodies where they are now
     report_contacts();          // what began, ended and hit
     sense();                    // who is inside the sensors
     fall_asleep(dt);            // islands at rest

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "collision/random.hpp"
+#include "simd/width.hpp"
 #include "world/builders.hpp"
 
 // The same calls give the same bits, and the hash tells worlds apart.
@@ -50,6 +51,21 @@ TYPED_TEST(Determinism, RepeatedRunsAreEqualInEveryStep) {
         first.step(frame_time);
         second.step(frame_time);
     }
+}
+
+/// The lanes are 1, 4, 8 or 16 wide, as far as this processor goes.
+TYPED_TEST(Determinism, AnyLaneWidthGivesTheSameBits) {
+    constexpr int D = TypeParam::value;
+    std::vector<std::uint64_t> hashes;
+    for (const int width : {1, 4, 8, 16}) {
+        if (!detail::can_run_lanes(width)) continue;
+        detail::set_lane_width(width);
+        World<D> world = heap<D>();
+        run(world, 240);
+        hashes.push_back(world.hash());
+    }
+    detail::set_lane_width(0);
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
 TYPED_TEST(Determinism, AMovedWorldGoesOnAsIfNothingHadBeen) {
