@@ -323,40 +323,37 @@ Vec<D> middle_of(const Shape<D>& convex) {
 }
 
 template <int D>
-double inner_radius(const Shape<D>& convex) {
-    const auto smallest = [&](const Vec<D>& half) {
-        double least = half.x;
-        for (int i = 1; i < D; ++i) least = std::min(least, half[i]);
-        return least;
-    };
-    switch (convex.kind) {
-        case ShapeKind::box:
-            return smallest(convex.b) + convex.radius;
-        case ShapeKind::hull: {
-            const Vec<D> middle = middle_of(convex);
-            double least = longest_length;
-            for (std::size_t i = 0; i < convex.core->normals.size(); ++i) {
-                const Vec<D>& normal = convex.core->normals[i];
-                double offset;
-                if constexpr (D == 2)
-                    offset = dot(normal, convex.core->vertices[i]);
-                else
-                    offset = convex.core->offsets[i];
-                least = std::min(least, offset - dot(normal, middle));
-            }
-            return least + convex.radius;
+Shape<D> inner_ball(const Shape<D>& convex) {
+    Shape<D> ball;
+    ball.a = middle_of(convex);
+    ball.radius = convex.radius;
+    if (convex.kind == ShapeKind::box) {
+        double smallest = convex.b.x;
+        for (int i = 1; i < D; ++i) smallest = std::min(smallest, convex.b[i]);
+        ball.radius += smallest;
+    } else if (convex.kind == ShapeKind::hull) {
+        double least = longest_length;
+        for (std::size_t i = 0; i < convex.core->normals.size(); ++i) {
+            const Vec<D>& normal = convex.core->normals[i];
+            double offset;
+            if constexpr (D == 2)
+                offset = dot(normal, convex.core->vertices[i]);
+            else
+                offset = convex.core->offsets[i];
+            least = std::min(least, offset - dot(normal, ball.a));
         }
-        case ShapeKind::cylinder:
-            return std::min(convex.radius, convex.half_height);
-        case ShapeKind::cone: {
-            // Half way up the axis the side is half the base's radius away, less by the slope.
-            const double height = 2 * convex.half_height;
-            const double slope = height / std::sqrt(height * height + convex.radius * convex.radius);
-            return std::min(convex.half_height, 0.5 * convex.radius * slope);
-        }
-        default:
-            return convex.radius;
+        ball.radius += least;
+    } else if (convex.kind == ShapeKind::cylinder) {
+        ball.radius = std::min(convex.radius, convex.half_height);
+    } else if (convex.kind == ShapeKind::cone) {
+        // The centre of mass lies a quarter up the axis, where the radius is three quarters of the base's;
+        // the side is nearer than that by its slope.
+        const double height = 2 * convex.half_height;
+        const double slope = height / std::sqrt(height * height + convex.radius * convex.radius);
+        ball.a -= 0.25 * height * convex.b;
+        ball.radius = std::min(0.25 * height, 0.75 * convex.radius * slope);
     }
+    return ball;
 }
 
 template <int D>
@@ -393,8 +390,8 @@ template Shape<2> make_shape(const ShapeDefinition<2>&);
 template Shape<3> make_shape(const ShapeDefinition<3>&);
 template Vec<2> middle_of(const Shape<2>&);
 template Vec<3> middle_of(const Shape<3>&);
-template double inner_radius(const Shape<2>&);
-template double inner_radius(const Shape<3>&);
+template Shape<2> inner_ball(const Shape<2>&);
+template Shape<3> inner_ball(const Shape<3>&);
 template std::optional<FacePlane<2>> facing_plane(const Shape<2>&, const Vec<2>&);
 template std::optional<FacePlane<3>> facing_plane(const Shape<3>&, const Vec<3>&);
 template Aabb<2> bounds(const Shape<2>&, const Transform<2>&);

@@ -85,9 +85,9 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction);
 template <int D>
 Vec<D> middle_of(const Shape<D>& convex);
 
-/// Radius of a ball about that point that fits into the shape.
+/// A ball that fits into a convex shape, about its middle or its centre of mass, as a shape of its own.
 template <int D>
-double inner_radius(const Shape<D>& convex);
+Shape<D> inner_ball(const Shape<D>& convex);
 
 /// The flat face of the shape, rounding included, that looks most along the unit vector `direction` (in the
 /// body's frame): its plane n · x = offset. Nothing when that is more than 2.5 degrees off.

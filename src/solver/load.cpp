@@ -157,7 +157,7 @@ void Solver<D>::fill_block(const SolverInput<D>& input, Section& section, std::s
     blocks.passes().load(blocks.span(block, 1), {input.contacts.data(), index.data(), count.data()}, view_);
     for (std::size_t lane = 0; lane < blocks.width(); ++lane) {
         if (count[lane] > 0 && !carries_impulse(blocks.rows(), begin + lane))
-            section.unsettled.push_back(static_cast<std::uint32_t>(begin + lane));
+            section.unsettled.push_back({static_cast<std::uint32_t>(begin + lane)});
     }
 }
 

@@ -174,6 +174,9 @@ CAROM_INLINE F gap(const ContactRows<D, F>& c, const NormalRow<D, F>& p, const M
             rise(ta, c.normal, p.arm_a, cross(p.arm_a, c.normal)));
 }
 
+/// A gap that counts as closed, m.
+constexpr float closed_gap = 1e-5f;
+
 /// What all contacts of a sub-step share.
 template <class F>
 struct SubStep {
@@ -211,8 +214,9 @@ CAROM_INLINE void solve_normals(ContactRows<D, F>& c, Motion<D, F>& a, Motion<D,
             scale = select(apart, F(1), mass_scale);
             keep = select(apart, F(0), impulse_scale);
         } else {
-            // A gap that is still open after this sub-step is the business of the next one.
-            scale = select(apart, select(old > F(0), F(1), F(0)), F(1));
+            // A gap that is still open after this sub-step is the business of the next one, unless it is as
+            // small as rounding leaves it: of a face that lands flat, all corners are to stop together.
+            scale = select(next_gap > F(closed_gap), select(old > F(0), F(1), F(0)), F(1));
             bias = select(apart, scale * next_gap * sub.inverse_length, F(0));
         }
         const F speed = dot(n, b.v - a.v) + (angular_dot(b.w, lever_b) - angular_dot(a.w, lever_a));

@@ -7,7 +7,7 @@
 /// of these contacts are solved, friction included, until their points agree.
 namespace carom::detail {
 
-/// Finds the contacts that carry an impulse for the first time. Are there any?
+/// Finds the contacts that have begun to carry an impulse. Are there any?
 template <int D>
 bool Solver<D>::find_struck() {
     bool some = false;
@@ -15,17 +15,34 @@ bool Solver<D>::find_struck() {
         s.struck.clear();
         const LaneStore<Rows>& rows = s.blocks.rows();
         std::size_t left = 0;
-        for (const std::uint32_t place : s.unsettled) {
-            if (carries_impulse(rows, place)) {
-                s.struck.push_back(place);
-            } else {
-                s.unsettled[left++] = place;
+        for (Unsettled contact : s.unsettled) {
+            const bool begun = contact.left < settling_substeps;
+            if (begun || carries_impulse(rows, contact.place)) {
+                s.struck.push_back(contact.place);
+                --contact.left;
             }
+            if (contact.left > 0) s.unsettled[left++] = contact;
         }
-        s.unsettled.resize(left);
+        s.unsettled.resize(left, {0});
         some |= !s.struck.empty();
     }
     return some;
+}
+
+/// The impulse of a blow in the last sub-step is nothing for the next step to begin with.
+template <int D>
+void Solver<D>::forget_last_blows() {
+    for (Section& s : sections_) {
+        for (const Unsettled& contact : s.unsettled) {
+            if (contact.left + 1 != settling_substeps) continue;
+            Rows rows = s.blocks.rows().get(contact.place);
+            for (NormalRow<D, float>& p : rows.points) p.impulse = 0;
+            rows.friction_impulse = {};
+            rows.twist_impulse = 0;
+            rows.rolling_impulse = {};
+            s.blocks.rows().set(contact.place, rows);
+        }
+    }
 }
 
 /// Copies the struck contacts into blocks of their own, those of a colour side by side.
@@ -150,6 +167,7 @@ void Solver<D>::sum_struck() {
 
 #define CAROM_INSTANTIATE(D)                         \
     template bool Solver<D>::find_struck();          \
+    template void Solver<D>::forget_last_blows();    \
     template void Solver<D>::settle_struck<true>();  \
     template void Solver<D>::settle_struck<false>(); \
     template void Solver<D>::sum_struck();

@@ -78,6 +78,7 @@ void Solver<D>::step_through(int substeps) {
         (last ? passes_->finish : passes_->finish_and_integrate_velocities)(body_span(), h_);
     }
     each_section([&](auto span, auto& passes) { passes.tally(span); });
+    forget_last_blows();
 }
 
 template void Solver<2>::run(const SolverInput<2>&);

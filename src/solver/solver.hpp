@@ -44,15 +44,24 @@ class Solver {
     using Rows = ContactRows<D, float>;
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
+    /// A contact that carried no impulse when the step began, and for how many more sub-steps with one it is
+    /// settled.
+    struct Unsettled {
+        std::uint32_t place;
+        int left = settling_substeps;
+    };
+    /// The sub-step of a blow leaves an impulse that is not needed any more in the next, and that one in
+    /// turn.
+    static constexpr int settling_substeps = 2;
     /// Contacts that are solved with one lane width: all that have a colour in the widest lanes, and the
     /// overflow of the colouring one by one.
     struct Section {
         ContactBlocks<D> blocks;
         std::vector<std::uint32_t> contacts;       ///< by place: which of the active ones, or `none`
         std::vector<std::uint32_t> colour_starts;  ///< places
-        std::vector<std::uint32_t> unsettled;      ///< places of contacts that never carried an impulse
-        std::vector<std::uint32_t> struck;   ///< places of those that do for the first time in this sub-step
-        ContactBlocks<D> settling;           ///< copies of the struck ones, close together
+        std::vector<Unsettled> unsettled;          ///< contacts that have just begun, or are yet to
+        std::vector<std::uint32_t> struck;         ///< places of those that carry an impulse in this sub-step
+        ContactBlocks<D> settling;                 ///< copies of the struck ones, close together
         std::vector<std::uint32_t> sources;  ///< by place in `settling`: where the copy is from, or `none`
     };
     /// A point that may bounce, as it was at the start of the step.
@@ -84,6 +93,7 @@ class Solver {
 
     // settle.cpp: contacts that begin.
     bool find_struck();
+    void forget_last_blows();
     void copy_struck(Section& section);
     void return_struck(Section& section);
     template <bool biased>

@@ -50,13 +50,22 @@ std::uint32_t new_body_place(WorldState<D>& w) {
     return i;
 }
 
+/// As long as none of these has come to the other side of a wall, nothing has passed through.
+template <int D>
+Shape<D> core_of(const Shape<D>& shape) {
+    if (shape.kind == ShapeKind::plane || shape.kind == ShapeKind::terrain) return {};
+    Shape<D> ball = inner_ball(shape);
+    ball.radius *= 0.5;
+    return ball;
+}
+
 template <int D>
 ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
                      Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) w.shapes.emplace_back();
     w.shapes[i] = {std::move(shape), definition, body};
-    w.find_middle(i);
+    w.shapes[i].core = core_of(w.shapes[i].shape);
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -180,7 +189,7 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     }
     w.shapes[i].shape = std::move(made);
     w.shapes[i].definition = definition;
-    w.find_middle(i);
+    w.shapes[i].core = core_of(w.shapes[i].shape);
     w.update_mass(body);
     w.forget_manifolds_of(body);
     w.remove_leaf(i);

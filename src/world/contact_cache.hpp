@@ -31,7 +31,7 @@ struct RelativePose {
 template <int D>
 struct ContactCache {
     struct Point {
-        Vec<D, float> on_a{}, on_b{};  ///< from the centres of mass, in the bodies' axes
+        Vec<D> on_a{}, on_b{};  ///< from the centres of mass, in the bodies' axes; a fixed body may be large
         float separation = 0;
         std::uint32_t feature = 0;
     };

@@ -51,16 +51,6 @@ struct StepMotion {
     double turn_speed() const { return std::sqrt(angular_dot(turned, turned)); }
 };
 
-/// A ball in the middle of the shape, half as large as fits. As long as none of these has come to the other
-/// side of a wall, nothing has passed through.
-template <int D>
-Shape<D> core_ball(const Shape<D>& shape) {
-    Shape<D> ball;
-    ball.a = middle_of(shape);
-    ball.radius = 0.5 * inner_radius(shape);
-    return ball;
-}
-
 /// What stands still, or moves, in the way of a body.
 template <int D>
 struct Obstacle {
@@ -71,22 +61,33 @@ struct Obstacle {
 };
 
 /// The share of the step after which the shape is as near to the obstacle as `near`, by conservative
-/// advancement; nothing when it never is, or overlaps from the start.
+/// advancement; nothing when it never is. One that is nearer from the start meets the obstacle at once if it
+/// ends deeper or on the other side.
 template <int D>
 std::optional<double> time_of_meeting(const Shape<D>& shape, const BodyMass<D>& mass,
                                       const StepMotion<D>& sweep, const Obstacle<D>& obstacle, double near) {
     constexpr int most_advances = 128;
     const double turning =
         sweep.turn_speed() * mass.radius + obstacle.sweep.turn_speed() * obstacle.mass.radius;
+    const auto gap_at = [&](double share) {
+        const BodyState<D> there = obstacle.sweep.at(share), here = sweep.at(share);
+        auto gap = gap_between<D>(obstacle.shape, shape, obstacle.facet,
+                                  relative(frame(there, obstacle.mass), frame(here, mass)));
+        if (gap) gap->axis = rotate(there.rotation, gap->axis);
+        return gap;
+    };
     double share = 0;
     for (int i = 0; i < most_advances; ++i) {
-        const BodyState<D> there = obstacle.sweep.at(share), here = sweep.at(share);
-        const auto gap = gap_between<D>(obstacle.shape, shape, obstacle.facet,
-                                        relative(frame(there, obstacle.mass), frame(here, mass)));
-        if (!gap || (i == 0 && gap->distance <= near)) return std::nullopt;
-        if (gap->distance <= near) return share;
-        const double closing =
-            turning - dot(rotate(there.rotation, gap->axis), sweep.way - obstacle.sweep.way);
+        const auto gap = gap_at(share);
+        if (!gap) return std::nullopt;
+        if (gap->distance <= near) {
+            if (i > 0) return share;
+            const auto end = gap_at(1);
+            const bool stays_out =
+                end && dot(end->axis, gap->axis) > 0 && end->distance > gap->distance - near;
+            return stays_out ? std::nullopt : std::optional(0.0);
+        }
+        const double closing = turning - dot(gap->axis, sweep.way - obstacle.sweep.way);
         if (closing <= 0) return std::nullopt;
         share += (gap->distance - 0.5 * near) / closing;
         if (share >= 1) return std::nullopt;
@@ -124,21 +125,20 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const BodyMass<D>& mass = masses[body];
     const BodyState<D>& start = earlier(body);
     const ShapeRecord<D>& own = shapes[shape];
-    const Vec<D> first = apply(frame(start, mass), own.middle);
-    const Vec<D> last = apply(frame_of(body), own.middle);
+    const Vec<D> first = apply(frame(start, mass), own.core.a);
+    const Vec<D> last = apply(frame_of(body), own.core.a);
     const std::uint32_t other_body = shapes[other].body;
     const Vec<D> other_way = states[other_body].position - earlier(other_body).position;
-    if (length(last - first - other_way) <= 0.5 * own.inner_radius) return;
+    if (length(last - first - other_way) <= own.core.radius) return;
 
     const StepMotion<D> sweep(start, states[body]);
     const Obstacle<D> obstacle{shapes[other].shape, facet,
                                StepMotion<D>(earlier(other_body), states[other_body]), masses[other_body]};
-    const Shape<D> core = core_ball(own.shape);
-    const auto passes = time_of_meeting(core, mass, sweep, obstacle, 1e-3 * core.radius);
+    const auto passes = time_of_meeting(own.core, mass, sweep, obstacle, 1e-3 * own.core.radius);
     if (!passes) return;
-    const double near = std::min(0.5 * speculative_distance, 0.1 * own.inner_radius);
+    const double near = std::min(0.5 * speculative_distance, 0.2 * own.core.radius);
     const auto meets = time_of_meeting(own.shape, mass, sweep, obstacle, near);
-    const BodyState<D> stopped = sweep.at(meets ? std::min(*meets, *passes) : *passes);
+    const BodyState<D> stopped = sweep.at(meets && *meets > 0 ? std::min(*meets, *passes) : *passes);
     states[body].position = stopped.position;
     states[body].rotation = stopped.rotation;
     states[body].turns = stopped.turns;

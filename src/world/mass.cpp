@@ -107,18 +107,8 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     }
 }
 
-template <int D>
-void WorldState<D>::find_middle(std::uint32_t shape) {
-    ShapeRecord<D>& s = shapes[shape];
-    if (s.shape.kind == ShapeKind::plane || s.shape.kind == ShapeKind::terrain) return;
-    s.middle = middle_of(s.shape);
-    s.inner_radius = inner_radius(s.shape);
-}
-
 template MassProperties<2> body_mass(const BodyDefinition<2>&, const std::vector<ShapeDefinition<2>>&);
 template MassProperties<3> body_mass(const BodyDefinition<3>&, const std::vector<ShapeDefinition<3>>&);
-template void WorldState<2>::find_middle(std::uint32_t);
-template void WorldState<3>::find_middle(std::uint32_t);
 template void WorldState<2>::update_mass(std::uint32_t);
 template void WorldState<3>::update_mass(std::uint32_t);
 

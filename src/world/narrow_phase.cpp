@@ -43,13 +43,7 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
     for (int i = 0; i < m.count; ++i) {
         const Vec<D> on_a = m.points[i].position - ma.center;
         const Vec<D> on_b = unrotate(cache.pose.rotation, on_a - cache.pose.position);
-        auto& mark = cache.points[i];
-        mark = {narrow<float>(on_a), narrow<float>(on_b), 0, m.points[i].feature};
-        // The gap that gives the separation back when it is added to what the rounded marks part.
-        const Vec<D> parted = cache.pose.position + rotate(cache.pose.rotation, narrow<double>(mark.on_b)) -
-                              narrow<double>(mark.on_a);
-        mark.separation =
-            static_cast<float>(m.points[i].separation - dot(narrow<double>(cache.normal), parted));
+        cache.points[i] = {on_a, on_b, static_cast<float>(m.points[i].separation), m.points[i].feature};
     }
 }
 
@@ -66,8 +60,8 @@ void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>&
     c.count = 0;
     for (int i = 0; i < cache.count; ++i) {
         const auto& mark = cache.points[i];
-        const Vec<D> on_a = rotate(a.rotation, narrow<double>(mark.on_a));
-        const Vec<D> on_b = between + rotate(b.rotation, narrow<double>(mark.on_b));
+        const Vec<D> on_a = rotate(a.rotation, mark.on_a);
+        const Vec<D> on_b = between + rotate(b.rotation, mark.on_b);
         const double separation = mark.separation + dot(normal, on_b - on_a);
         if (separation > reach) continue;
         const Vec<D> middle = 0.5 * (on_a + on_b);

@@ -24,8 +24,7 @@ struct ShapeRecord {
     Shape<D> shape;
     ShapeDefinition<D> definition;
     std::uint32_t body = 0;
-    Vec<D> middle{};                    ///< of a convex shape, in the body's frame
-    double inner_radius = 0;            ///< of the ball about the middle that fits into it, m
+    Shape<D> core{};                    ///< of a convex shape: a ball half as large as fits into it
     std::int32_t leaf = Tree<D>::none;  ///< in the tree of fixed or of moving things, by the body's type
     bool in_fixed_tree = false;
 };
@@ -225,7 +224,6 @@ struct WorldState {
                                       const Test& test) const;
 
     // mass.cpp
-    void find_middle(std::uint32_t shape);
     void update_mass(std::uint32_t body);
 
     /// May anything change between the two bodies in this step?

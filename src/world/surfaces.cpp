@@ -117,7 +117,7 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
 
     const Vec<D> along = -arm + dot(arm, n) * n;  // towards the body, on the surface
     const double way = length(along);
-    if (way < 1e-6 * length(arm)) return true;
+    if (way < 1e-4 * length(arm)) return true;
     const auto& own = *std::find_if(first, last, is_own);
     return std::ranges::none_of(std::array{probe / way, 0.25, 0.5, 1.0}, [&](double share) {
         const Vec<D> onwards = p + std::min(share, 1.0) * along;
