@@ -49,7 +49,8 @@ TEST_P(ReplayOf, KeepsTheMotionToItsResolution) {
             ASSERT_EQ(flags & 1, state.present ? 1 : 0) << "body " << b << " frame " << f;
             if (!state.present) continue;
             ASSERT_EQ(flags >> 1 & 1, state.awake ? 1 : 0);
-            ASSERT_EQ(flags >> 2, state.jumped ? 1 : 0);
+            ASSERT_EQ(flags >> 2 & 1, state.jumped ? 1 : 0);
+            ASSERT_EQ(flags >> 3, state.sensing ? 1 : 0);
             for (int i = 0; i < GetParam(); ++i) {
                 ASSERT_NEAR(decoded.place(i, b, f), state.position[i], 0.51e-4)
                     << "body " << b << " frame " << f;
@@ -267,6 +268,7 @@ class ReplayFile : public testing::Test {
 };
 
 TEST_F(ReplayFile, IsWrittenWhole) {
+    if (replay_template().empty()) GTEST_SKIP() << "the replay viewer is not built in";
     const Replay replay = lone_body(2, 3);
     const fs::path path = folder / "run.html";
     write_replay(replay, path);
