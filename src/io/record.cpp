@@ -212,11 +212,10 @@ void Recorder<D>::record_frame(const World<D>& world) {
         const BodyId<D> body = bodies_[i];
         const bool sensing = std::ranges::any_of(
             sensors_[i], [&](const ShapeId<D> sensor) { return !world.inside(sensor).empty(); });
-        frame.states.push_back({vector_of(world.center_of_mass(body)),
-                                narrowed(rotation_of(world.rotation(body))),
-                                narrowed(vector_of(world.velocity(body))),
-                                turning_of(world.angular_velocity(body)), true, world.awake(body), false,
-                                sensing});
+        frame.states.push_back(
+            {vector_of(world.center_of_mass(body)), narrowed(rotation_of(world.rotation(body))),
+             narrowed(vector_of(world.velocity(body))), turning_of(world.angular_velocity(body)), true,
+             world.awake(body), false, sensing});
     }
     for (const Contact<D>& contact : world.contacts())
         for (int i = 0; i < contact.count; ++i) {

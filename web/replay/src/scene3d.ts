@@ -11,7 +11,7 @@ import { Flow, flowOf } from "./flow3d";
 import { Content, contentOf, reachOf } from "./framing";
 import { Lights, environment } from "./lights3d";
 import { ContactMarks, LinkMarks, SelectionMarks } from "./marks3d";
-import { Finish, cssColor, lookOf, materialOf, stateColor } from "./materials";
+import { Finish, cssColor, lookOf, materialOf, mix, stateColor } from "./materials";
 import { Recording } from "./recording";
 import { Insets, Scene } from "./scene";
 import { solidOf } from "./solids";
@@ -102,7 +102,8 @@ export class Scene3 implements Scene {
                 const solid = solidOf(shape);
                 if (!solid) return;
                 const { finish } = lookOf(materialOf(this.recording, index, i));
-                let surface: string = shape.sensor ? "sensor" : body.type === "fixed" ? "fixed" : finish;
+                const fixed = shape.type === "mesh" ? "ground" : "fixed";
+                let surface: string = shape.sensor ? "sensor" : body.type === "fixed" ? fixed : finish;
                 const inBody = placeOf(body.center_of_mass, shape);
                 const flow = shape.sensor ? null : flowOf(index, shape, inBody.clone());
                 if (flow) this.flows.set((surface += ` flow ${index} ${i}`), flow);
@@ -135,11 +136,11 @@ export class Scene3 implements Scene {
         let material = this.surfaces.get(name);
         if (!material) {
             const [kind] = name.split(" ");
-            const fixed = kind === "fixed";
+            const fixed = kind === "fixed" || kind === "ground";
             material =
                 kind === "sensor"
                     ? sensorMaterial()
-                    : surfaceMaterial(fixed ? "matte" : (kind as Finish), fixed, reflections, this.flows.get(name)?.chevrons);
+                    : surfaceMaterial(fixed ? "matte" : (kind as Finish), kind === "fixed", reflections, this.flows.get(name)?.chevrons);
             this.surfaces.set(name, material);
         }
         return material;
@@ -190,8 +191,9 @@ export class Scene3 implements Scene {
                 const { type } = this.recording.bodies[body];
                 const look = lookOf(materialOf(this.recording, body, part.shape));
                 const shade = stateColor(look.color, type, (state & 3) === 1, this.theme.neutral, body);
-                const lit = this.recording.bodies[body].shapes[part.shape].sensor;
-                color.setRGB(...(lit ? (state & 4 ? this.theme.accent : this.theme.potential) : shade), "srgb");
+                const { sensor, type: kind } = this.recording.bodies[body].shapes[part.shape];
+                if (sensor) color.setRGB(...(state & 4 ? this.theme.accent : this.theme.potential), "srgb");
+                else color.setRGB(...(kind === "mesh" ? mix(shade, look.color, 0.3) : shade), "srgb");
                 slot.setColor(color);
             }
         }
