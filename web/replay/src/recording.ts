@@ -95,6 +95,7 @@ export interface BodyState {
     angularVelocity: Vector;
     present: boolean;
     awake: boolean;
+    sensing: boolean;
 }
 
 export class Recording {
@@ -205,6 +206,7 @@ export class Recording {
             angularVelocity: flat ? read("w") : read("wx", "wy", "wz"),
             present: (flags & present) !== 0,
             awake: (flags & awake) !== 0,
+            sensing: (flags & sensing) !== 0,
         };
     }
 
