@@ -188,6 +188,22 @@ TEST_P(ReplayOf, DescribesBodiesShapesAndLinks) {
     for (const std::string& type : expected) EXPECT_GT(types[type], 0) << type;
 }
 
+TEST_P(ReplayOf, TellsSensorsBeltsAndOneWayShapes) {
+    const nlohmann::json header = written(sample_replay(GetParam())).header;
+    std::map<std::string, nlohmann::json> found;
+    for (const nlohmann::json& body : header["bodies"])
+        for (const nlohmann::json& shape : body["shapes"])
+            for (const std::string key : {"sensor", "one_way", "surface_velocity"})
+                if (shape.contains(key)) {
+                    EXPECT_FALSE(found.contains(key)) << "one of each is in the sample";
+                    found[key] = shape[key];
+                }
+    const bool flat = GetParam() == 2;
+    EXPECT_EQ(found["sensor"], true);
+    EXPECT_EQ(found["one_way"], flat ? nlohmann::json({0, 1}) : nlohmann::json({0, 1, 0}));
+    EXPECT_EQ(found["surface_velocity"], flat ? nlohmann::json({0.5, 0}) : nlohmann::json({0.5, 0, 0}));
+}
+
 TEST(ReplayWriter, NamesCannotBreakThePage) {
     Replay replay = lone_body(2, 1);
     replay.name = "</script><script>alert(1)</script><!-- @carom-motion@";

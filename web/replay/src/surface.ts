@@ -84,7 +84,7 @@ float chevron() {
     vec3 normal = normalize(cross(dFdx(worldPlace), dFdy(worldPlace)));
     vec3 aside = cross(normal, chevronDirection);
     vec3 place = worldPlace - chevronMiddle;
-    float across = abs(fract(dot(place, normalize(aside)) / chevronSpacing) - 0.5);
+    float across = abs(fract(dot(place, normalize(aside)) / chevronSpacing + 0.5) - 0.5); // from the middle
     float along = fract((dot(place, chevronDirection) - chevronWay) / chevronSpacing + across);
     float change = fwidth(dot(place, chevronDirection) / chevronSpacing) * 1.5 + 1e-4;
     float stripe = smoothstep(0.0, change, along) - smoothstep(0.3, 0.3 + change, along);
