@@ -153,8 +153,14 @@ ReplayBody body_of(const World<D>& world, BodyId<D> id, const std::string& label
     std::size_t next = 0;
     for (const ShapeId<D> shape : world.shapes(id)) {
         const ShapeDefinition<D>& definition = world.shape(shape);
-        body.shapes.push_back({std::visit(GeometryOf<D>{}, definition.geometry), vector_of(definition.center),
-                               rotation_of(definition.rotation), materials[next++]});
+        ReplayShape& drawn = body.shapes.emplace_back();
+        drawn.geometry = std::visit(GeometryOf<D>{}, definition.geometry);
+        drawn.center = vector_of(definition.center);
+        drawn.rotation = rotation_of(definition.rotation);
+        drawn.material = materials[next++];
+        drawn.sensor = definition.sensor;
+        if (definition.one_way) drawn.one_way = vector_of(*definition.one_way);
+        drawn.surface_velocity = vector_of(definition.surface_velocity);
     }
     return body;
 }
@@ -188,6 +194,9 @@ Recorder<D>::Recorder(const Scene& scene, const SceneWorld<D>& built) : bodies_(
         const BodyId<D> id = bodies_[i];
         replay_.bodies.push_back(
             body_of(built.world, id, body_label(built.world.name(id), i), data.materials[i]));
+        auto& sensors = sensors_.emplace_back();
+        for (const ShapeId<D> shape : built.world.shapes(id))
+            if (built.world.shape(shape).sensor) sensors.push_back(shape);
         if (id.index >= index_of_.size()) index_of_.resize(id.index + 1, -1);
         index_of_[id.index] = static_cast<std::int32_t>(i);
     }
@@ -199,11 +208,15 @@ void Recorder<D>::record_frame(const World<D>& world) {
     const Energy energy = world.energy();
     frame.kinetic = energy.kinetic;
     frame.potential = energy.potential;
-    for (const BodyId<D> body : bodies_)
-        frame.states.push_back({vector_of(world.center_of_mass(body)),
-                                narrowed(rotation_of(world.rotation(body))),
-                                narrowed(vector_of(world.velocity(body))),
-                                turning_of(world.angular_velocity(body)), true, world.awake(body), false});
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const BodyId<D> body = bodies_[i];
+        const bool sensing = std::ranges::any_of(
+            sensors_[i], [&](const ShapeId<D> sensor) { return !world.inside(sensor).empty(); });
+        frame.states.push_back(
+            {vector_of(world.center_of_mass(body)), narrowed(rotation_of(world.rotation(body))),
+             narrowed(vector_of(world.velocity(body))), turning_of(world.angular_velocity(body)), true,
+             world.awake(body), false, sensing});
+    }
     for (const Contact<D>& contact : world.contacts())
         for (int i = 0; i < contact.count; ++i) {
             const ContactPoint<D>& point = contact.points[static_cast<std::size_t>(i)];

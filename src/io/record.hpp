@@ -21,7 +21,8 @@ class Recorder {
 
   private:
     std::vector<BodyId<D>> bodies_;
-    std::vector<std::int32_t> index_of_;  ///< in the scene, by the index in the body's handle
+    std::vector<std::vector<ShapeId<D>>> sensors_;  ///< of each body
+    std::vector<std::int32_t> index_of_;            ///< in the scene, by the index in the body's handle
     Replay replay_;
 };
 

@@ -86,6 +86,10 @@ json shape_json(const ReplayShape& shape, int dimension) {
     else
         result["rotation"] = shape.rotation;
     result["material"] = shape.material;
+    if (shape.sensor) result["sensor"] = true;
+    if (shape.one_way) result["one_way"] = vector_json(*shape.one_way, dimension);
+    if (shape.surface_velocity != ReplayVector{})
+        result["surface_velocity"] = vector_json(shape.surface_velocity, dimension);
     return result;
 }
 

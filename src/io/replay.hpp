@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -75,6 +76,9 @@ struct ReplayShape {
     ReplayVector center{};
     ReplayRotation rotation{0, 0, 0, 1};
     std::string material;  ///< its name, from which the viewer takes the colour; may be empty
+    bool sensor = false;
+    std::optional<ReplayVector> one_way{};  ///< the open side, in the shape's frame
+    ReplayVector surface_velocity{};        ///< in the shape's frame, m/s
 };
 
 enum class ReplayBodyType : std::uint8_t { fixed, kinematic, dynamic };
@@ -106,7 +110,8 @@ struct ReplayState {
     std::array<float, 3> angular_velocity{};  ///< rad/s
     bool present = false;                     ///< false before the body is added and after it is removed
     bool awake = true;
-    bool jumped = false;  ///< it was put here: the way from the last frame is not to be interpolated
+    bool jumped = false;   ///< it was put here: the way from the last frame is not to be interpolated
+    bool sensing = false;  ///< something is inside a sensor that it carries
 };
 
 struct ReplayContact {

@@ -287,7 +287,7 @@ ReplayData encode_motion(const Replay& replay) {
         }
         for (std::size_t f = 0; f < frames; ++f)
             if (const ReplayState* state = state_of(replay.frames[f], b))
-                flags[b * frames + f] = 1 | state->awake << 1 | state->jumped << 2;
+                flags[b * frames + f] = 1 | state->awake << 1 | state->jumped << 2 | state->sensing << 3;
     }
 
     ColumnStream stream;

@@ -36,7 +36,8 @@ void read_world(const Value& value, WorldDefinition<D>& world, double& step) {
         value, {field("gravity", world.gravity), field("step", length_of_step),
                 field("substeps", world.substeps), field("integrator", integrator), field("impacts", impacts),
                 field("sleep", world.sleep), field("continuous", world.continuous),
-                not_negative("restitution_threshold", world.restitution_threshold)});
+                not_negative("restitution_threshold", world.restitution_threshold),
+                not_negative("hit_speed", world.hit_speed)});
 }
 
 void read_materials(const Value& value, Materials& materials) {

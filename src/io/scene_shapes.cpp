@@ -116,11 +116,11 @@ void read_shape(const Value& value, const Materials& materials, ShapeDefinition<
     const Fields placed = {field("type", [](const Value&) {}), field("center", shape.center),
                            orientation<D>(shape.rotation)};
     // A number is a speed along the shape's x axis.
-    const auto surface_velocity = [&](const Value& value) {
-        if (value.json().is_number())
-            read(value, shape.surface_velocity.x);
+    const auto surface_velocity = [&](const Value& v) {
+        if (v.json().is_number())
+            read(v, shape.surface_velocity.x);
         else
-            read(value, shape.surface_velocity);
+            read(v, shape.surface_velocity);
     };
     // The named material comes before the fields that may change it.
     const Fields contact = {field("category", shape.filter.category),    field("mask", shape.filter.mask),

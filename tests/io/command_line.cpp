@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "io/replay_template.hpp"
 #include "support.hpp"
 
 namespace carom::io {
@@ -151,6 +152,7 @@ TEST(CommandLine, trace_of_chosen_bodies) {
 }
 
 TEST(CommandLine, outputs_do_not_change_the_run) {
+    if (replay_template().empty()) GTEST_SKIP() << "the replay viewer is not built in";
     const TestFolder folder;
     const std::string scene = folder.write("scene.json", falling_2);
     const auto hash = [&](const std::string& more) {
@@ -163,6 +165,7 @@ TEST(CommandLine, outputs_do_not_change_the_run) {
 }
 
 TEST(CommandLine, outputs_that_cannot_be_written) {
+    if (replay_template().empty()) GTEST_SKIP() << "the replay viewer is not built in";
     const TestFolder folder;
     const std::string scene = folder.write("scene.json", falling_2);
     for (const std::string option : {"--trace", "--replay"}) {

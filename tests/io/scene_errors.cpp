@@ -62,6 +62,8 @@ TEST(SceneErrors, world) {
         {scene_text(2, "\"world\": {\"sleep\": 1}"), "world.sleep: 1 is neither true nor false"},
         {scene_text(2, "\"world\": {\"restitution_threshold\": -1}"),
          "world.restitution_threshold: -1 is negative"},
+        {scene_text(2, "\"world\": {\"hit_speed\": -0.5}"), "world.hit_speed: -0.5 is negative"},
+        {scene_text(2, "\"world\": {\"hit_speed\": true}"), "world.hit_speed: true is not a number"},
         {scene_text(2, "\"world\": {\"Gravity\": [0, 0]}"),
          "world.Gravity: this key is not known (did you mean \"gravity\"?)"},
     });
@@ -223,12 +225,42 @@ TEST(SceneErrors, shapes) {
          "bodies[0].shapes[0].group: 18446744073709551615 is not a whole number"},
         {shape_text(2, "\"type\": \"ball\", \"radius\": 1, \"density\": -1"),
          "bodies[0].shapes[0].density: -1 is negative"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": 1, \"sensor\": true"),
-         "bodies[0].shapes[0].sensor: true is not supported by this version; allowed is false"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": 1, \"surface_velocity\": 2"),
-         "bodies[0].shapes[0].surface_velocity: 2 is not supported by this version; allowed is 0"},
-        {shape_text(2, "\"type\": \"ball\", \"radius\": 1, \"one_way\": [0, 1]"),
-         "bodies[0].shapes[0].one_way: this key is not supported by this version"},
+    });
+}
+
+/// A scene with a ball that also has these entries.
+std::string ball_text(int dimension, const std::string& entries) {
+    return shape_text(dimension, "\"type\": \"ball\", \"radius\": 1, " + entries);
+}
+
+TEST(SceneErrors, surfaces) {
+    const std::string shape = "bodies[0].shapes[0].";
+    expect_refused({
+        {ball_text(2, "\"sensor\": 1"), shape + "sensor: 1 is neither true nor false"},
+        {ball_text(2, "\"sensor\": null"), shape + "sensor: null is neither true nor false"},
+        {ball_text(2, "\"surface_velocity\": \"fast\""), shape + "surface_velocity: \"fast\" is not a list"},
+        {ball_text(2, "\"surface_velocity\": true"), shape + "surface_velocity: true is not a list"},
+        {ball_text(2, "\"surface_velocity\": [1, 0, 0]"),
+         shape + "surface_velocity: [1, 0, 0] is not a list of 2 numbers [x, y]"},
+        {ball_text(3, "\"surface_velocity\": [1, 0]"),
+         shape + "surface_velocity: [1, 0] is not a list of 3 numbers [x, y, z]"},
+        {ball_text(3, "\"surface_velocity\": [0, null, 0]"),
+         shape + "surface_velocity[1]: null is not a number"},
+        {ball_text(2, "\"surface_velocity\": [0, -1e9]"),
+         shape + "surface_velocity[1]: -1e+09 is not between -1e+06 and 1e+06"},
+        {ball_text(2, "\"surface_velocity\": NaN"),
+         "line 1, column 103: " + shape +
+             "surface_velocity: syntax error while parsing value - invalid literal"},
+        {ball_text(2, "\"surface_velocity\": 1e999"),
+         "line 1, column 107: " + shape + "surface_velocity: number overflow parsing '1e999'"},
+        {ball_text(2, "\"one_way\": [0, 0]"), shape + "one_way: a direction has a length"},
+        {ball_text(3, "\"one_way\": [0, 0, 0]"), shape + "one_way: a direction has a length"},
+        {ball_text(2, "\"one_way\": [NaN, 1]"),
+         "line 1, column 95: " + shape + "one_way[0]: syntax error while parsing value - invalid literal"},
+        {ball_text(2, "\"one_way\": true"), shape + "one_way: true is not a list"},
+        {ball_text(2, "\"one_way\": 1"), shape + "one_way: 1 is not a list"},
+        {ball_text(3, "\"one_way\": [0, 1]"), shape + "one_way: [0, 1] is not a list of 3 numbers [x, y, z]"},
+        {ball_text(2, "\"one_way\": [0, \"up\"]"), shape + "one_way[1]: \"up\" is not a number"},
     });
 }
 

@@ -69,6 +69,7 @@ TEST(SceneValues, defaults_are_those_of_the_contract) {
     EXPECT_TRUE(data.world.sleep);
     EXPECT_TRUE(data.world.continuous);
     EXPECT_EQ(data.world.restitution_threshold, 1);
+    EXPECT_EQ(data.world.hit_speed, 1);
 
     const auto body = body_of<3>("");
     EXPECT_EQ(body.type, BodyType::dynamic);
@@ -85,13 +86,15 @@ TEST(SceneValues, defaults_are_those_of_the_contract) {
     EXPECT_EQ(shape.filter.category, 1u);
     EXPECT_EQ(shape.filter.mask, std::numeric_limits<std::uint64_t>::max());
     EXPECT_EQ(shape.filter.group, 0);
+    EXPECT_FALSE(shape.sensor || shape.one_way);
+    EXPECT_EQ(shape.surface_velocity, Vec3{});
 }
 
 TEST(SceneValues, world) {
     const Scene scene = parse_scene(
         scene_text(2, R"("world": {"gravity": [1.5, -2.25], "step": 0.01, "substeps": 7, "integrator": "rk4",
                          "impacts": "sequential", "sleep": false, "continuous": false,
-                         "restitution_threshold": 0.25})"),
+                         "restitution_threshold": 0.25, "hit_speed": 3.5})"),
         "t");
     EXPECT_EQ(scene.step, 0.01);
     const auto& world = std::get<SceneData<2>>(scene.data).world;
@@ -101,6 +104,7 @@ TEST(SceneValues, world) {
     EXPECT_EQ(world.impacts, Impacts::sequential);
     EXPECT_FALSE(world.sleep || world.continuous);
     EXPECT_EQ(world.restitution_threshold, 0.25);
+    EXPECT_EQ(world.hit_speed, 3.5);
     for (const auto& [name, integrator] : {std::pair{"explicit_euler", Integrator::explicit_euler},
                                            {"verlet", Integrator::verlet},
                                            {"semi_implicit_euler", Integrator::semi_implicit_euler}})
@@ -194,7 +198,7 @@ TEST(SceneValues, materials_and_what_a_shape_says_itself) {
         "bodies": [{"shapes": [
             {"type": "ball", "radius": 1, "material": "m"},
             {"type": "ball", "radius": 1, "friction": 0.75, "material": "m", "category": 6, "mask": 9223372036854775808,
-             "group": -3, "sensor": false, "surface_velocity": 0},
+             "group": -3},
             {"type": "ball", "radius": 1, "material": "n"}]}])"));
     const auto& shapes = data.bodies[0].shapes;
     EXPECT_EQ(shapes[0].material.density, 2);
@@ -208,6 +212,34 @@ TEST(SceneValues, materials_and_what_a_shape_says_itself) {
     EXPECT_EQ(shapes[1].filter.group, -3);
     EXPECT_EQ(shapes[2].material.density, 1000);
     EXPECT_EQ(data.materials[0], (std::vector<std::string>{"m", "m", "n"}));
+}
+
+TEST(SceneValues, sensors_belts_and_one_way_shapes) {
+    const std::string ball = R"("type": "ball", "radius": 1, )";
+    EXPECT_TRUE(shape_of<2>(ball + R"("sensor": true)").sensor);
+    EXPECT_FALSE(shape_of<3>(ball + R"("sensor": false)").sensor);
+    EXPECT_EQ(shape_of<2>(ball + R"("surface_velocity": -2.5)").surface_velocity, (Vec2{-2.5, 0}));
+    EXPECT_EQ(shape_of<3>(ball + R"("surface_velocity": 2)").surface_velocity, (Vec3{2, 0, 0}));
+    EXPECT_EQ(shape_of<2>(ball + R"("surface_velocity": [1, 2])").surface_velocity, (Vec2{1, 2}));
+    EXPECT_EQ(shape_of<3>(ball + R"("surface_velocity": [1, 2, 3])").surface_velocity, (Vec3{1, 2, 3}));
+    EXPECT_EQ(shape_of<2>(ball + R"("one_way": [0, 2])").one_way, (Vec2{0, 2}));
+    EXPECT_EQ(shape_of<3>(ball + R"("one_way": [0, 0, -1])").one_way, (Vec3{0, 0, -1}));
+}
+
+TEST(SceneValues, a_belt_of_a_scene_carries_and_its_sensor_sees) {
+    const Scene scene = parse_scene(scene_text(2, R"("bodies": [
+        {"type": "fixed", "shapes": [{"type": "box", "size": [20, 1], "center": [0, -0.5], "surface_velocity": 1}]},
+        {"type": "fixed", "shapes": [{"type": "box", "size": [1, 1], "center": [2, 0.5], "sensor": true}]},
+        {"shapes": [{"type": "box", "size": [1, 1], "center": [0, 0.5]}]}])"),
+                                    "t");
+    SceneWorld<2> built = build<2>(scene);
+    bool seen = false;
+    for (int i = 0; i < 120; ++i) {
+        built.world.step(scene.step);
+        seen = seen || !built.world.sensor_begins().empty();
+    }
+    EXPECT_TRUE(seen);
+    EXPECT_NEAR(built.world.velocity(built.bodies[2]).x, 1, 1e-3);
 }
 
 TEST(SceneValues, forces) {

@@ -305,7 +305,11 @@ void add_specials(Toy& toy) {
     ReplayBody lift;
     lift.name = "lift";
     lift.type = ReplayBodyType::kinematic;
-    lift.shapes = {shape(ReplayBox{{2, 0.3, 2}}, "metal")};
+    lift.shapes = {shape(ReplayBox{{2, 0.3, 2}}, "metal"), shape(ReplayBall{0.8}, "light", {0, 1, 0}),
+                   shape(ReplayBox{{2, 0.2, 2}}, "wood", {0, 2, 0})};
+    lift.shapes[0].surface_velocity = {0.5, 0, 0};
+    lift.shapes[1].sensor = true;
+    lift.shapes[2].one_way = ReplayVector{0, 1, 0};
     const auto index = static_cast<std::int32_t>(toy.replay.bodies.size());
     toy.replay.bodies.push_back(lift);
     toy.replay.links.push_back({"spring", index, toy.particles[1].body, {0, 0.15, 0}, {}});
@@ -318,6 +322,7 @@ void move_lift(Replay& replay) {
         ReplayState& state = replay.frames[f].states[lift];
         const double time = static_cast<double>(f) * replay.step;
         state.present = true;
+        state.sensing = f % 100 >= 50;
         state.position = {0, 7 + std::sin(time), 0};
         state.velocity = {0, static_cast<float>(std::cos(time)), 0};
     }

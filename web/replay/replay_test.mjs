@@ -197,6 +197,30 @@ for (const dimension of [2, 3]) {
         assert.ok(colors(shot, 0, 0.2, 1, 0.5) > 15);
     }));
 
+    for (const key of ["sensor", "surface_velocity", "one_way"])
+        test(`${dimension}D: shows which shape has a ${key}`, async () => {
+            const without = fileOf(`${key}${dimension}`);
+            const whole = readFileSync(sample, "utf8");
+            const [start, header] = /id="carom-header">([^<]*)/.exec(whole);
+            const changed = JSON.parse(header);
+            for (const { shapes } of changed.bodies) for (const shape of shapes) delete shape[key];
+            assert.notEqual(JSON.stringify(changed), JSON.stringify(JSON.parse(header)));
+            const safe = JSON.stringify(changed).replaceAll("<", "\\u003c"); // names may hold the end of a script
+            writeFileSync(without, whole.replace(start, () => `id="carom-header">${safe}`));
+            const pictures = [];
+            for (const file of [sample, without])
+                await withReplay(file, "t=1&controls=off", small, async (page) => pictures.push(await picture(page)));
+            assert.ok(differentPixels(...pictures) > 40, `${differentPixels(...pictures)} pixels tell it`);
+        });
+
+    test(`${dimension}D: a sensor lights up while something is in it`, () => withReplay(sample, "controls=off", small, async (page) => {
+        // The samples' lift carries one that is full in the second half of every hundred frames.
+        for (const [frame, full] of [[49, false], [50, true], [99, true], [100, false]]) {
+            await replay(page, `seekFrame(${frame})`);
+            assert.equal((await replay(page, `state("lift")`)).sensing, full, `frame ${frame}`);
+        }
+    }));
+
     test(`${dimension}D: a thousand bodies`, () => withReplay(fileOf(`large${dimension}`), "t=3&controls=off", small, async (page) => {
         const stats = await replay(page, "stats()");
         assert.deepEqual([stats.bodies, stats.frames], [1001, 600]);

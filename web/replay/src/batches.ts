@@ -50,7 +50,7 @@ export class Batches {
     }
 
     private add(mesh: Mesh, parts: Part[]) {
-        mesh.castShadow = mesh.receiveShadow = true;
+        mesh.castShadow = mesh.receiveShadow = !(mesh.material as Material).transparent;
         mesh.frustumCulled = false; // bounds of what moves would have to be found anew for every frame
         this.objects.push(mesh);
         this.partsOf.set(mesh, parts);

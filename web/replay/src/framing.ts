@@ -16,7 +16,7 @@ const length = (v: Vector) => Math.hypot(...v);
 const dot = (a: Vector, b: Vector) => a.reduce((sum, value, i) => sum + value * b[i], 0);
 
 /** How far a shape goes along a unit direction, both in its own frame; infinite for planes. */
-function support(shape: Shape, direction: Vector): number {
+export function support(shape: Shape, direction: Vector): number {
     switch (shape.type) {
         case "ball": return shape.radius;
         case "box": return dot(shape.size, direction.map(Math.abs)) / 2;

@@ -2,7 +2,15 @@
 
 export type Vector = number[];
 
-export type Shape = { center: Vector; angle?: number; rotation?: Vector; material: string } & (
+export type Shape = {
+    center: Vector;
+    angle?: number;
+    rotation?: Vector;
+    material: string;
+    sensor?: boolean;
+    one_way?: Vector;
+    surface_velocity?: Vector;
+} & (
     | { type: "ball"; radius: number }
     | { type: "box"; size: Vector; rounding: number }
     | { type: "capsule"; from: Vector; to: Vector; radius: number }
@@ -67,6 +75,7 @@ export interface Channel {
 const present = 1;
 const awake = 2;
 const jumped = 4;
+const sensing = 8;
 
 /** Where all bodies are at one moment. Angles in 2D are `turns`, rotations in 3D unit quaternions. */
 export interface Poses {
@@ -75,6 +84,8 @@ export interface Poses {
     turns: Float64Array;
     present: Uint8Array;
     awake: Uint8Array;
+    /** Is something inside a sensor of the body? */
+    sensing: Uint8Array;
 }
 
 export interface BodyState {
@@ -84,6 +95,7 @@ export interface BodyState {
     angularVelocity: Vector;
     present: boolean;
     awake: boolean;
+    sensing: boolean;
 }
 
 export class Recording {
@@ -107,6 +119,7 @@ export class Recording {
             turns: new Float64Array(count * (this.dimension === 2 ? 1 : 4)),
             present: new Uint8Array(count),
             awake: new Uint8Array(count),
+            sensing: new Uint8Array(count),
         };
     }
 
@@ -148,6 +161,7 @@ export class Recording {
             const then = body * frames + next;
             poses.present[body] = flags[at] & present;
             poses.awake[body] = flags[at] & awake;
+            poses.sensing[body] = flags[at] & sensing;
             // What jumps or vanishes at the next frame stays where it is until then.
             const share = (flags[then] & jumped) !== 0 || (flags[then] & present) === 0 ? 0 : between;
             for (let i = 0; i < places.length; ++i) {
@@ -192,6 +206,7 @@ export class Recording {
             angularVelocity: flat ? read("w") : read("wx", "wy", "wz"),
             present: (flags & present) !== 0,
             awake: (flags & awake) !== 0,
+            sensing: (flags & sensing) !== 0,
         };
     }
 

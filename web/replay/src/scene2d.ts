@@ -6,6 +6,7 @@ import { Content, contentOf, reachOf } from "./framing";
 import { cssColor, lookOf, materialOf, mix, stateColor } from "./materials";
 import { Recording, Vector } from "./recording";
 import { Insets, Scene } from "./scene";
+import { Flow, flowOf } from "./flow2d";
 import { DrawnShape, drawnShape } from "./shapes2d";
 import { Theme } from "./theme";
 import { drawBackdrop, drawScaleBar } from "./backdrop2d";
@@ -21,6 +22,8 @@ interface Item {
     body: number;
     shape: number;
     drawn: DrawnShape | null;
+    flow: Flow | null;
+    sensor: boolean;
     awake: Style;
     asleep: Style;
 }
@@ -44,10 +47,14 @@ export class Scene2 implements Scene {
     constructor(private readonly recording: Recording) {
         this.content = contentOf(recording);
         this.reaches = recording.bodies.map(reachOf);
+        const grain = Math.hypot(...this.content.high.map((high, i) => high - this.content.low[i])) / 110;
         const none = { fill: "", stroke: "", mark: "" };
         recording.bodies.forEach((body, index) =>
             body.shapes.forEach((shape, i) =>
-                this.items.push({ body: index, shape: i, drawn: drawnShape(body, shape), awake: none, asleep: none })));
+                this.items.push({
+                    body: index, shape: i, drawn: drawnShape(body, shape, grain), flow: flowOf(body, shape),
+                    sensor: !!shape.sensor, awake: none, asleep: none,
+                })));
         // What is fixed lies behind what moves.
         const rank = (item: Item) => (recording.bodies[item.body].type === "fixed" ? 0 : 1);
         this.items.sort((a, b) => rank(a) - rank(b) || a.body - b.body);
@@ -60,7 +67,8 @@ export class Scene2 implements Scene {
             const { type } = this.recording.bodies[item.body];
             const { color } = lookOf(materialOf(this.recording, item.body, item.shape));
             const style = (asleep: boolean): Style => {
-                const base = stateColor(color, type, asleep, theme.neutral, item.body);
+                const plain = stateColor(color, type, asleep, theme.neutral, item.body);
+                const base = item.drawn?.hatches ? mix(plain, color, 0.4) : plain; // lines have less to show
                 const line = mix(base, [...edge], theme.name === "dark" ? 0.28 : 0.34);
                 return {
                     fill: cssColor(mix(base, theme.background, type === "fixed" ? 0.35 : 0.18), type === "fixed" ? 1 : 0.9),
@@ -130,9 +138,11 @@ export class Scene2 implements Scene {
         const line = Math.min(1.6, Math.max(0.5, camera.scale / 24)) / camera.scale;
         context.lineJoin = "round";
         context.lineCap = "round";
-        const shown = this.items.filter(({ body }) => this.visible(body));
+        const visible = this.items.filter(({ body }) => this.visible(body));
+        const shown = visible.filter(({ sensor }) => !sensor);
         this.drawFixed(shown.filter(({ body }) => recording.bodies[body].type === "fixed"), line);
-        for (const { body, drawn, ...styles } of shown) {
+        for (const item of visible) if (item.sensor) this.drawSensor(item, line);
+        for (const { body, drawn, flow, ...styles } of shown) {
             if (!drawn || recording.bodies[body].type === "fixed") continue;
             const style = awake[body] ? styles.awake : styles.asleep;
             this.enterBody(body);
@@ -141,6 +151,7 @@ export class Scene2 implements Scene {
             context.lineWidth = line;
             context.fill(drawn.outline);
             context.stroke(drawn.outline);
+            if (flow) this.drawFlow(drawn, flow, style, line);
             if (!drawn.mark) continue;
             context.strokeStyle = style.mark;
             context.lineWidth = line * 1.4;
@@ -156,6 +167,7 @@ export class Scene2 implements Scene {
         for (const { body, shape, drawn, awake } of items) {
             context.strokeStyle = awake.stroke;
             context.fillStyle = awake.fill;
+            if (drawn?.hatches) continue;
             if (drawn) {
                 this.enterBody(body);
                 context.lineWidth = 2 * line + overlap;
@@ -166,13 +178,48 @@ export class Scene2 implements Scene {
             }
         }
         context.lineWidth = overlap;
-        for (const { body, drawn, awake } of items) {
+        for (const { body, drawn, flow, awake } of items) {
             if (!drawn) continue;
             this.enterBody(body);
             context.fillStyle = context.strokeStyle = awake.fill;
+            context.lineWidth = overlap;
             context.fill(drawn.outline);
+            if (drawn.hatches) {
+                context.strokeStyle = awake.stroke;
+                context.lineWidth = 2.4 * line;
+                context.stroke(drawn.outline);
+                context.lineWidth = line;
+                context.stroke(drawn.hatches);
+                continue;
+            }
             context.stroke(drawn.outline);
+            if (flow) this.drawFlow(drawn, flow, awake, line);
         }
+    }
+
+    /** What notices but does not touch lets everything shine through, and lights up while something is in it. */
+    private drawSensor({ body, drawn }: Item, line: number) {
+        if (!drawn) return;
+        const { context, theme } = this;
+        const color = this.recording.poses.sensing[body] ? theme.accent : theme.potential;
+        this.enterBody(body);
+        context.fillStyle = cssColor(color, this.recording.poses.sensing[body] ? 0.3 : 0.13);
+        context.fill(drawn.outline);
+        context.strokeStyle = cssColor(color, 0.8);
+        context.lineWidth = line;
+        context.setLineDash([4 * line, 4 * line]);
+        context.stroke(drawn.outline);
+        context.setLineDash([]);
+    }
+
+    private drawFlow(drawn: DrawnShape, flow: Flow, style: Style, line: number) {
+        const { context } = this;
+        context.save();
+        context.clip(drawn.outline);
+        context.strokeStyle = style.mark;
+        context.lineWidth = Math.max(line, flow.width);
+        context.stroke(flow.chevrons(this.time));
+        context.restore();
     }
 
     private drawLinks() {

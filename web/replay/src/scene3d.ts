@@ -7,14 +7,15 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Batches, Part } from "./batches";
 import { Contacts } from "./decode";
+import { Flow, flowOf } from "./flow3d";
 import { Content, contentOf, reachOf } from "./framing";
 import { Lights, environment } from "./lights3d";
 import { ContactMarks, LinkMarks, SelectionMarks } from "./marks3d";
-import { Finish, cssColor, lookOf, materialOf, stateColor } from "./materials";
+import { Finish, cssColor, lookOf, materialOf, mix, stateColor } from "./materials";
 import { Recording } from "./recording";
 import { Insets, Scene } from "./scene";
 import { solidOf } from "./solids";
-import { surfaceMaterial, surfaceUniforms } from "./surface";
+import { sensorMaterial, surfaceMaterial, surfaceUniforms } from "./surface";
 import { Theme } from "./theme";
 
 const one = new Vector3(1, 1, 1);
@@ -42,13 +43,14 @@ export class Scene3 implements Scene {
     private readonly batches: Batches;
     private readonly planes: { mesh: Mesh; body: number; shape: number; place: Matrix4 }[] = [];
     private readonly surfaces = new Map<string, Material>();
+    private readonly flows = new Map<string, Flow>();
     private readonly reaches: number[];
     private readonly moving: number[];
     private readonly selection: SelectionMarks;
     private readonly links: LinkMarks;
     private contactMarks: ContactMarks | null = null;
     private theme!: Theme;
-    /** What each body was drawn as: not at all (0), asleep (1), awake (2). */
+    /** What each body was drawn as: not at all (0), asleep (1), awake (2); 4 more with something in its sensors. */
     private readonly shown: Uint8Array;
     private insets: Insets = { left: 0, right: 0, top: 0, bottom: 0 };
     private untouched = true;
@@ -100,8 +102,12 @@ export class Scene3 implements Scene {
                 const solid = solidOf(shape);
                 if (!solid) return;
                 const { finish } = lookOf(materialOf(this.recording, index, i));
-                const surface = body.type === "fixed" ? "fixed" : finish;
-                const place = placeOf(body.center_of_mass, shape).multiply(solid.place);
+                const fixed = shape.type === "mesh" ? "ground" : "fixed";
+                let surface: string = shape.sensor ? "sensor" : body.type === "fixed" ? fixed : finish;
+                const inBody = placeOf(body.center_of_mass, shape);
+                const flow = shape.sensor ? null : flowOf(index, shape, inBody.clone());
+                if (flow) this.flows.set((surface += ` flow ${index} ${i}`), flow);
+                const place = inBody.multiply(solid.place);
                 // The slot is given when all parts are known.
                 this.parts.push({ body: index, shape: i, solid, place, surface, slot: undefined! });
             }),
@@ -129,8 +135,12 @@ export class Scene3 implements Scene {
     private surface(name: string, reflections: Texture | null): Material {
         let material = this.surfaces.get(name);
         if (!material) {
-            const fixed = name.startsWith("fixed");
-            material = surfaceMaterial(fixed ? "matte" : (name as Finish), fixed, reflections);
+            const [kind] = name.split(" ");
+            const fixed = kind === "fixed" || kind === "ground";
+            material =
+                kind === "sensor"
+                    ? sensorMaterial()
+                    : surfaceMaterial(fixed ? "matte" : (kind as Finish), kind === "fixed", reflections, this.flows.get(name)?.chevrons);
             this.surfaces.set(name, material);
         }
         return material;
@@ -158,7 +168,7 @@ export class Scene3 implements Scene {
 
     update(time: number) {
         this.time = time;
-        const { present, awake } = this.recording.pose(time);
+        const { present, awake, sensing } = this.recording.pose(time);
         const pose = new Matrix4();
         const matrix = new Matrix4();
         const color = new Color();
@@ -169,7 +179,7 @@ export class Scene3 implements Scene {
             const { body, slot } = part;
             if (body !== last) {
                 before = this.shown[body];
-                state = present[body] ? (awake[body] ? 2 : 1) : 0;
+                state = present[body] ? (awake[body] ? 2 : 1) + (sensing[body] ? 4 : 0) : 0;
                 this.shown[body] = state;
                 this.poseOf(body, pose);
                 last = body;
@@ -180,7 +190,10 @@ export class Scene3 implements Scene {
             if (state !== before && state !== 0) {
                 const { type } = this.recording.bodies[body];
                 const look = lookOf(materialOf(this.recording, body, part.shape));
-                color.setRGB(...stateColor(look.color, type, state === 1, this.theme.neutral, body), "srgb");
+                const shade = stateColor(look.color, type, (state & 3) === 1, this.theme.neutral, body);
+                const { sensor, type: kind } = this.recording.bodies[body].shapes[part.shape];
+                if (sensor) color.setRGB(...(state & 4 ? this.theme.accent : this.theme.potential), "srgb");
+                else color.setRGB(...(kind === "mesh" ? mix(shade, look.color, 0.3) : shade), "srgb");
                 slot.setColor(color);
             }
         }
@@ -189,6 +202,7 @@ export class Scene3 implements Scene {
             mesh.matrix.multiplyMatrices(this.poseOf(body, pose), place);
             mesh.matrixWorldNeedsUpdate = true;
         }
+        for (const flow of this.flows.values()) flow.update(this.poseOf(flow.body, pose), time);
         this.links.update(this.origin);
         this.updateSelection(pose);
         this.coverShadow();

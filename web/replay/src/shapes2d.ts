@@ -6,10 +6,12 @@ export interface DrawnShape {
     outline: Path2D;
     /** A line inside that shows how the body is turned, where the outline does not. */
     mark: Path2D | null;
+    /** For lines without an area: strokes into what is solid. */
+    hatches: Path2D | null;
 }
 
-/** Null for planes, which have no end: they are drawn to the edge of the view. */
-export function drawnShape(body: Body, shape: Shape): DrawnShape | null {
+/** Null for planes, which have no end: they are drawn to the edge of the view. Hatches are a `grain` apart, m. */
+export function drawnShape(body: Body, shape: Shape, grain: number): DrawnShape | null {
     const local = localPath(shape);
     if (!local) return null;
     const place = new DOMMatrix()
@@ -20,7 +22,11 @@ export function drawnShape(body: Body, shape: Shape): DrawnShape | null {
         result.addPath(path, place);
         return result;
     };
-    return { outline: placed(local), mark: shape.type === "ball" ? placed(ballMark(shape.radius)) : null };
+    return {
+        outline: placed(local),
+        mark: shape.type === "ball" ? placed(ballMark(shape.radius)) : null,
+        hatches: shape.type === "chain" ? placed(hatches(shape.points, shape.two_sided ? [] : shape.segments, grain)) : null,
+    };
 }
 
 function localPath(shape: Shape): Path2D | null {
@@ -42,35 +48,34 @@ function localPath(shape: Shape): Path2D | null {
             roundedPolygon(path, shape.points, shape.rounding);
             return path;
         case "chain":
-            segments(path, shape.points, shape.segments, shape.two_sided);
+            for (const [i, j] of shape.segments) {
+                path.moveTo(shape.points[i][0], shape.points[i][1]);
+                path.lineTo(shape.points[j][0], shape.points[j][1]);
+            }
             return path;
         default:
             return null;
     }
 }
 
-/** Lines alone, without an area: the segments and, unless they are two-sided, strokes into the solid, which is
- *  to the right of their direction. */
-function segments(path: Path2D, points: Vector[], corners: number[][], twoSided: boolean) {
-    const size = (axis: number) =>
-        points.reduce((most, p) => Math.max(most, p[axis]), -Infinity) - points.reduce((least, p) => Math.min(least, p[axis]), Infinity);
-    const whole = corners.reduce((sum, [i, j]) => sum + Math.hypot(points[j][0] - points[i][0], points[j][1] - points[i][1]), 0);
-    const spacing = Math.max(Math.hypot(size(0), size(1)) / 120, whole / 2000);
+/** Strokes from segments into the solid, which is to the right of their direction. */
+function hatches(points: Vector[], segments: number[][], grain: number): Path2D {
+    const path = new Path2D();
+    const lengthOf = ([i, j]: number[]) => Math.hypot(points[j][0] - points[i][0], points[j][1] - points[i][1]);
+    const spacing = Math.max(grain, segments.reduce((sum, segment) => sum + lengthOf(segment), 0) / 2000);
     let next = spacing / 2;
-    for (const [i, j] of corners) {
-        const [from, to] = [points[i], points[j]];
-        path.moveTo(from[0], from[1]);
-        path.lineTo(to[0], to[1]);
-        if (twoSided) continue;
-        const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
-        const along = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+    for (const [i, j] of segments) {
+        const from = points[i];
+        const length = lengthOf([i, j]);
+        const along = [(points[j][0] - from[0]) / length, (points[j][1] - from[1]) / length];
         for (; next < length; next += spacing) {
             const foot = [from[0] + next * along[0], from[1] + next * along[1]];
             path.moveTo(foot[0], foot[1]);
-            path.lineTo(foot[0] + 0.6 * spacing * (along[1] - along[0]), foot[1] - 0.6 * spacing * (along[0] + along[1]));
+            path.lineTo(foot[0] + 0.7 * spacing * (along[1] - along[0]), foot[1] - 0.7 * spacing * (along[0] + along[1]));
         }
         next -= length;
     }
+    return path;
 }
 
 /** A convex polygon (or a segment), its corners counter-clockwise, grown by `radius`. */

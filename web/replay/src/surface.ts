@@ -10,6 +10,15 @@ export const surfaceUniforms = {
     gridOrigin: { value: new Vector3() },
 };
 
+/** Where the chevrons of one surface are: along `direction`, a unit vector of the scene, `spacing` apart. */
+export interface Chevrons {
+    direction: { value: Vector3 };
+    middle: { value: Vector3 };
+    spacing: { value: number };
+    /** How far they have run, m. */
+    way: { value: number };
+}
+
 const vertexDeclarations = /* glsl */ `
 attribute vec3 edge;
 attribute float tint;
@@ -64,6 +73,25 @@ float gridLine() {
 }
 `;
 
+const chevronDeclarations = /* glsl */ `
+uniform vec3 chevronDirection;
+uniform vec3 chevronMiddle;
+uniform float chevronSpacing;
+uniform float chevronWay;
+
+// On the faces that the direction lies in.
+float chevron() {
+    vec3 normal = normalize(cross(dFdx(worldPlace), dFdy(worldPlace)));
+    vec3 aside = cross(normal, chevronDirection);
+    vec3 place = worldPlace - chevronMiddle;
+    float across = abs(fract(dot(place, normalize(aside)) / chevronSpacing + 0.5) - 0.5); // from the middle
+    float along = fract((dot(place, chevronDirection) - chevronWay) / chevronSpacing + across);
+    float change = fwidth(dot(place, chevronDirection) / chevronSpacing) * 1.5 + 1e-4;
+    float stripe = smoothstep(0.0, change, along) - smoothstep(0.3, 0.3 + change, along);
+    return stripe * smoothstep(0.7, 0.9, length(aside)) * (1.0 - smoothstep(0.15, 0.5, change));
+}
+`;
+
 const finishes: Record<Finish, { roughness: number; metalness: number }> = {
     matte: { roughness: 0.92, metalness: 0 },
     satin: { roughness: 0.62, metalness: 0 },
@@ -71,24 +99,41 @@ const finishes: Record<Finish, { roughness: number; metalness: number }> = {
     metal: { roughness: 0.38, metalness: 0.4 },
 };
 
-export function surfaceMaterial(finish: Finish, gridded: boolean, environment: Texture | null): MeshStandardMaterial {
+export function surfaceMaterial(
+    finish: Finish,
+    gridded: boolean,
+    environment: Texture | null,
+    chevrons: Chevrons | null = null,
+): MeshStandardMaterial {
     const material = new MeshStandardMaterial({ ...finishes[finish], envMap: environment });
-    material.defines = { ...material.defines, ...(gridded ? { GRIDDED: "" } : {}) };
+    material.defines = { ...material.defines, ...(gridded ? { GRIDDED: "" } : {}), ...(chevrons ? { CHEVRONS: "" } : {}) };
     material.onBeforeCompile = (shader) => {
         Object.assign(shader.uniforms, surfaceUniforms);
+        for (const [name, uniform] of Object.entries(chevrons ?? {}))
+            shader.uniforms[`chevron${name[0].toUpperCase()}${name.slice(1)}`] = uniform;
         shader.vertexShader = shader.vertexShader
             .replace("#include <common>", `#include <common>\n${vertexDeclarations}`)
             .replace("#include <project_vertex>", `#include <project_vertex>\n${vertexBody}`);
         shader.fragmentShader = shader.fragmentShader
-            .replace("#include <common>", `#include <common>\n${fragmentDeclarations}`)
+            .replace("#include <common>", `#include <common>\n${fragmentDeclarations}${chevrons ? chevronDeclarations : ""}`)
             .replace("#include <color_fragment>", /* glsl */ `#include <color_fragment>
                 diffuseColor.rgb *= surfaceTint;
                 float lines = edgeStrength * edgeLine();
                 #ifdef GRIDDED
                 lines = max(0.5 * lines, 0.55 * gridStrength * gridLine());
                 #endif
+                #ifdef CHEVRONS
+                lines = max(lines, 0.35 * chevron());
+                #endif
                 diffuseColor.rgb *= 1.0 - lines;`);
     };
     return material;
 }
 
+
+/** Of what is a sensor: all shines through. */
+export function sensorMaterial(): MeshStandardMaterial {
+    const material = surfaceMaterial("matte", false, null);
+    Object.assign(material, { transparent: true, opacity: 0.3, depthWrite: false });
+    return material;
+}

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "io/scene.hpp"
 #include "io/scene_check.hpp"
@@ -9,10 +13,24 @@
 namespace carom::io {
 namespace {
 
-class FiveScenes : public testing::TestWithParam<const char*> {
+const std::filesystem::path folder = CAROM_SOURCE_DIR "/scenes";
+
+/// Every scene that comes with Carom, as it is named in the folder.
+std::vector<std::string> all_scenes() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.path().extension() == ".json")
+            names.push_back(entry.path().lexically_relative(folder).replace_extension().string());
+    std::ranges::sort(names);
+    return names;
+}
+
+class AllScenes : public testing::TestWithParam<std::string> {
   protected:
-    Scene load() const { return load_scene(std::string(CAROM_SOURCE_DIR "/scenes/") + GetParam() + ".json"); }
+    Scene load() const { return load_scene(folder / (GetParam() + ".json")); }
 };
+
+TEST(Scenes, are_found) { EXPECT_GE(all_scenes().size(), 11u); }
 
 template <int D>
 void expect_sound(const Scene& scene, int steps) {
@@ -32,17 +50,17 @@ void expect_sound(const Scene& scene, int steps) {
     }
 }
 
-TEST_P(FiveScenes, runs_and_stays_finite) {
+TEST_P(AllScenes, runs_and_stays_finite) {
     const Scene scene = load();
     scene.dimension() == 2 ? expect_sound<2>(scene, 240) : expect_sound<3>(scene, 120);
 }
 
-TEST_P(FiveScenes, nothing_is_suspicious) {
+TEST_P(AllScenes, nothing_is_suspicious) {
     for (const Suspicion& suspicion : check_scene(load()))
         ADD_FAILURE() << suspicion.place << ": " << suspicion.what;
 }
 
-TEST_P(FiveScenes, has_a_name_and_material_names) {
+TEST_P(AllScenes, has_a_name_and_material_names) {
     const Scene scene = load();
     EXPECT_NE(scene.name, "");
     const auto visit = [](const auto& data) {
@@ -53,10 +71,12 @@ TEST_P(FiveScenes, has_a_name_and_material_names) {
     std::visit(visit, scene.data);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FiveScenes,
-                         testing::Values("2d/lunar_lander", "2d/incredible_machine", "2d/angry_birds",
-                                         "3d/half_life", "3d/from_dust"),
-                         [](const auto& test) { return std::string(test.param).substr(3); });
+INSTANTIATE_TEST_SUITE_P(InFolder, AllScenes, testing::ValuesIn(all_scenes()), [](const auto& test) {
+    std::string name = test.param;
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+    return name;
+});
 
 }  // namespace
 }  // namespace carom::io
