@@ -178,6 +178,18 @@ bool Solver<D>::carries_impulse(const LaneStore<Rows>& rows, std::size_t place) 
     });
 }
 
+/// The most that the impulse of any point changes its own speed, m/s.
+template <int D>
+float Solver<D>::speed_taken(const LaneStore<Rows>& rows, std::size_t place) {
+    const Rows model;
+    float most = 0;
+    for (const NormalRow<D, float>& p : model.points) {
+        const float impulse = rows.at(place, field_of(model, p.impulse));
+        if (impulse > 0) most = std::max(most, impulse / rows.at(place, field_of(model, p.mass)));
+    }
+    return most;
+}
+
 template <int D>
 void Solver<D>::note_impacts(const Section& section, std::size_t place, const ContactRecord<D>& record) {
     const auto number = static_cast<std::uint32_t>(&section - sections_.data());
@@ -245,6 +257,7 @@ void Solver<D>::store(const SolverInput<D>& input) {
 #define CAROM_INSTANTIATE(D)                                                       \
     template void Solver<D>::gather_bodies(const SolverInput<D>&);                 \
     template bool Solver<D>::carries_impulse(const LaneStore<Rows>&, std::size_t); \
+    template float Solver<D>::speed_taken(const LaneStore<Rows>&, std::size_t);    \
     template void Solver<D>::deal_contacts(const SolverInput<D>&);                 \
     template void Solver<D>::store(const SolverInput<D>&);
 CAROM_INSTANTIATE(2)

@@ -7,26 +7,44 @@
 /// of these contacts are solved, friction included, until their points agree.
 namespace carom::detail {
 
+/// A contact that takes more speed than this in a sub-step was hit, and does not just begin to carry.
+constexpr float blow_speed = 0.25f;  // m/s
+
 /// Finds the contacts that have begun to carry an impulse. Are there any?
 template <int D>
 bool Solver<D>::find_struck() {
+    using Stage = typename Unsettled::Stage;
     bool some = false;
     for (Section& s : sections_) {
         s.struck.clear();
         const LaneStore<Rows>& rows = s.blocks.rows();
-        std::size_t left = 0;
-        for (Unsettled contact : s.unsettled) {
-            const bool begun = contact.left < settling_substeps;
-            if (begun || carries_impulse(rows, contact.place)) {
-                s.struck.push_back(contact.place);
-                --contact.left;
-            }
-            if (contact.left > 0) s.unsettled[left++] = contact;
+        for (Unsettled& contact : s.unsettled) {
+            if (contact.stage == Stage::was_hit)
+                contact.stage = Stage::ends;
+            else if (carries_impulse(rows, contact.place))
+                contact.stage = Stage::begins;
+            else
+                continue;
+            s.struck.push_back(contact.place);
         }
-        s.unsettled.resize(left, {0});
         some |= !s.struck.empty();
     }
     return some;
+}
+
+/// Of the contacts that began in this sub-step, those that were hit are to be settled once more.
+template <int D>
+void Solver<D>::note_blows() {
+    using Stage = typename Unsettled::Stage;
+    for (Section& s : sections_) {
+        std::erase_if(s.unsettled, [&](Unsettled& contact) {
+            if (contact.stage == Stage::waits) return false;
+            const bool hit =
+                contact.stage == Stage::begins && speed_taken(s.blocks.rows(), contact.place) > blow_speed;
+            contact.stage = Stage::was_hit;
+            return !hit;
+        });
+    }
 }
 
 /// The impulse of a blow in the last sub-step is nothing for the next step to begin with.
@@ -34,7 +52,7 @@ template <int D>
 void Solver<D>::forget_last_blows() {
     for (Section& s : sections_) {
         for (const Unsettled& contact : s.unsettled) {
-            if (contact.left + 1 != settling_substeps) continue;
+            if (contact.stage != Unsettled::Stage::was_hit) continue;
             Rows rows = s.blocks.rows().get(contact.place);
             for (NormalRow<D, float>& p : rows.points) p.impulse = 0;
             rows.friction_impulse = {};
@@ -167,6 +185,7 @@ void Solver<D>::sum_struck() {
 
 #define CAROM_INSTANTIATE(D)                         \
     template bool Solver<D>::find_struck();          \
+    template void Solver<D>::note_blows();           \
     template void Solver<D>::forget_last_blows();    \
     template void Solver<D>::settle_struck<true>();  \
     template void Solver<D>::settle_struck<false>(); \

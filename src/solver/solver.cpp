@@ -73,6 +73,7 @@ void Solver<D>::step_through(int substeps) {
         if (some_struck) {
             settle_struck<false>();
             sum_struck();
+            note_blows();
         }
         const bool last = i + 1 == substeps;
         (last ? passes_->finish : passes_->finish_and_integrate_velocities)(body_span(), h_);

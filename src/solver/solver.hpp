@@ -44,15 +44,13 @@ class Solver {
     using Rows = ContactRows<D, float>;
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    /// A contact that carried no impulse when the step began, and for how many more sub-steps with one it is
-    /// settled.
+    /// A contact that carried no impulse when the step began. It is settled in the sub-step in which it first
+    /// does, and in the next as well if that was a blow, as then its impulse is not needed any more.
     struct Unsettled {
+        enum class Stage : std::uint8_t { waits, begins, was_hit, ends };
         std::uint32_t place;
-        int left = settling_substeps;
+        Stage stage = Stage::waits;
     };
-    /// The sub-step of a blow leaves an impulse that is not needed any more in the next, and that one in
-    /// turn.
-    static constexpr int settling_substeps = 2;
     /// Contacts that are solved with one lane width: all that have a colour in the widest lanes, and the
     /// overflow of the colouring one by one.
     struct Section {
@@ -88,11 +86,13 @@ class Solver {
     static void prefetch_record(const SolverInput<D>& input, const Section& section, std::size_t place);
     void note_impacts(const Section& section, std::size_t place, const ContactRecord<D>& record);
     static bool carries_impulse(const LaneStore<Rows>& rows, std::size_t place);
+    static float speed_taken(const LaneStore<Rows>& rows, std::size_t place);
     void store(const SolverInput<D>& input);
     void store_contact(const Section& section, std::size_t place, ContactRecord<D>& record) const;
 
     // settle.cpp: contacts that begin.
     bool find_struck();
+    void note_blows();
     void forget_last_blows();
     void copy_struck(Section& section);
     void return_struck(Section& section);

@@ -101,7 +101,9 @@ void WorldState<D>::report_begin(const ContactRecord<D>& c) {
     static_cast<ShapePair<D>&>(hit) = names(c.shape_a, c.shape_b);
     hit.normal = normal;
     Vec<D> friction_speed{};
-    for (int i = 0; i < c.count; ++i) {
+    // A contact that another keeps the points of still has its own first point.
+    const int count = c.merged ? 1 : c.count;
+    for (int i = 0; i < count; ++i) {
         const ContactRecordPoint<D>& p = c.points[i];
         const Vec<D> first = relative_speed(a0, b0, p);
         const Vec<D> last = relative_speed(states[c.body_a], states[c.body_b], p);
@@ -116,7 +118,7 @@ void WorldState<D>::report_begin(const ContactRecord<D>& c) {
         const double leaving = dot(last, normal);
         hit.impulse += p.total_impulse;
         hit.energy_lost += 0.5 * p.total_impulse * (approach - leaving);
-        friction_speed += (0.5 / c.count) * (first + last);
+        friction_speed += (0.5 / count) * (first + last);
     }
     hit.energy_lost -= dot(narrow<double>(c.total_friction), friction_speed);
     events.contact_begins.push_back({hit, hit.point, normal});
