@@ -60,12 +60,20 @@ struct Obstacle {
     const BodyMass<D>& mass;
 };
 
+/// When a shape meets an obstacle, as a share of the step, and the direction from the obstacle to the shape.
+template <int D>
+struct Meeting {
+    double share;
+    Vec<D> axis;
+};
+
 /// The share of the step after which the shape is as near to the obstacle as `near`, by conservative
 /// advancement; nothing when it never is. One that is nearer from the start meets the obstacle at once if it
 /// ends deeper or on the other side.
 template <int D>
-std::optional<double> time_of_meeting(const Shape<D>& shape, const BodyMass<D>& mass,
-                                      const StepMotion<D>& sweep, const Obstacle<D>& obstacle, double near) {
+std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>& mass,
+                                        const StepMotion<D>& sweep, const Obstacle<D>& obstacle,
+                                        double near) {
     constexpr int most_advances = 128;
     const double turning =
         sweep.turn_speed() * mass.radius + obstacle.sweep.turn_speed() * obstacle.mass.radius;
@@ -77,22 +85,21 @@ std::optional<double> time_of_meeting(const Shape<D>& shape, const BodyMass<D>& 
         return gap;
     };
     double share = 0;
-    for (int i = 0; i < most_advances; ++i) {
+    for (int i = 0;; ++i) {
         const auto gap = gap_at(share);
         if (!gap) return std::nullopt;
-        if (gap->distance <= near) {
-            if (i > 0) return share;
+        if (gap->distance <= near || i == most_advances) {
+            if (i > 0) return Meeting<D>{share, gap->axis};
             const auto end = gap_at(1);
             const bool stays_out =
                 end && dot(end->axis, gap->axis) > 0 && end->distance > gap->distance - near;
-            return stays_out ? std::nullopt : std::optional(0.0);
+            return stays_out ? std::nullopt : std::optional(Meeting<D>{0, gap->axis});
         }
         const double closing = turning - dot(gap->axis, sweep.way - obstacle.sweep.way);
         if (closing <= 0) return std::nullopt;
         share += (gap->distance - 0.5 * near) / closing;
         if (share >= 1) return std::nullopt;
     }
-    return share;
 }
 
 }  // namespace
@@ -128,20 +135,33 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const Vec<D> first = apply(frame(start, mass), own.core.a);
     const Vec<D> last = apply(frame_of(body), own.core.a);
     const std::uint32_t other_body = shapes[other].body;
-    const Vec<D> other_way = states[other_body].position - earlier(other_body).position;
-    if (length(last - first - other_way) <= own.core.radius) return;
+    // How far the core came as seen from the obstacle.
+    const Vec<D> seen_first = apply_inverse(frame(earlier(other_body), masses[other_body]), first);
+    const Vec<D> seen_last = apply_inverse(frame_of(other_body), last);
+    if (length(seen_last - seen_first) <= own.core.radius) return;
 
     const StepMotion<D> sweep(start, states[body]);
     const Obstacle<D> obstacle{shapes[other].shape, facet,
                                StepMotion<D>(earlier(other_body), states[other_body]), masses[other_body]};
-    const auto passes = time_of_meeting(own.core, mass, sweep, obstacle, 1e-3 * own.core.radius);
+    const auto passes = first_meeting(own.core, mass, sweep, obstacle, 1e-3 * own.core.radius);
     if (!passes) return;
     const double near = std::min(0.5 * speculative_distance, 0.2 * own.core.radius);
-    const auto meets = time_of_meeting(own.shape, mass, sweep, obstacle, near);
-    const BodyState<D> stopped = sweep.at(meets && *meets > 0 ? std::min(*meets, *passes) : *passes);
-    states[body].position = stopped.position;
-    states[body].rotation = stopped.rotation;
-    states[body].turns = stopped.turns;
+    const auto meets = first_meeting(own.shape, mass, sweep, obstacle, near);
+    if (meets && meets->share > 0) {
+        const BodyState<D> stopped = sweep.at(std::min(meets->share, passes->share));
+        states[body].position = stopped.position;
+        states[body].rotation = stopped.rotation;
+        states[body].turns = stopped.turns;
+        return;
+    }
+    // It touched from the start, so there is no going back: it turns as it did, and its core stays outside.
+    const Transform<D> then = frame(obstacle.sweep.at(passes->share), obstacle.mass),
+                       now = frame_of(other_body);
+    const auto carried = [&](const Vec<D>& v) { return rotate(now.rotation, unrotate(then.rotation, v)); };
+    const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core.a);
+    const Vec<D> axis = carried(passes->axis);
+    const double inwards = dot(axis, now.position + carried(there - then.position) - last);
+    if (inwards > 0) states[body].position += inwards * axis;
 }
 
 /// Bodies that are apart and may meet within the step are moved on to where they first come near

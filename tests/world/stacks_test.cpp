@@ -16,7 +16,7 @@ struct Limits {
 };
 
 /// High columns and very unlike masses settle slowly: their points sink further before they carry.
-constexpr Limits wall{1e-3, 4e-3, 0.02}, column{5e-3, 0.01, 0.06}, unlike_masses{0.02, 0.1, 0.12},
+constexpr Limits wall{1e-3, 4e-3, 0.02}, column{5e-3, 0.01, 0.06}, unlike_masses{0.04, 0.1, 0.12},
     totem{0.03, 2e-3, 0.02};
 
 /// Lets the world run for five seconds and asks for rest.
