@@ -58,7 +58,7 @@ struct BodyInfo {
     Transform<D> rest{};           ///< that place: centre of mass and rotation when the rest began
     std::vector<ShapeId<D>> shapes;
     std::vector<std::uint32_t> ignored;  ///< indices of the bodies with which it does not collide, ascending
-    BodyDefinition<D> definition;  ///< as given, without the shapes: overrides, name and user data
+    BodyDefinition<D> definition;        ///< as given, without the shapes: overrides, name and user data
 };
 
 /// Placement of the body's frame.
