@@ -8,14 +8,14 @@
 namespace carom::detail {
 
 /// Stands for no part in particular.
-constexpr std::uint32_t whole = ~std::uint32_t{0};
+constexpr std::uint32_t no_part = ~std::uint32_t{0};
 
 /// An unordered pair of numbers, and a third one that tells several such pairs apart.
 struct PairKey {
     std::uint32_t a = 0, b = 0;  ///< a < b
-    std::uint32_t part = whole;
+    std::uint32_t part = no_part;
 
-    static PairKey of(std::uint32_t one, std::uint32_t other, std::uint32_t part = whole) {
+    static PairKey of(std::uint32_t one, std::uint32_t other, std::uint32_t part = no_part) {
         return {std::min(one, other), std::max(one, other), part};
     }
     friend auto operator<=>(const PairKey&, const PairKey&) = default;

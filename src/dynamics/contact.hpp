@@ -23,7 +23,7 @@ struct ContactRecordPoint {
 template <int D>
 struct ContactRecord {
     std::uint32_t shape_a = 0, shape_b = 0;
-    std::uint32_t facet = 0;  ///< of the terrain where one of the shapes is one, `whole` otherwise
+    std::uint32_t facet = 0;  ///< of the terrain where one of the shapes is one, `no_part` otherwise
     std::uint32_t body_a = 0, body_b = 0;
     int count = 0;
     float restitution = 0;

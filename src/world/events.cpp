@@ -38,7 +38,7 @@ void WorldState<D>::report_contacts() {
         if (c.merged) held = near = c.nearest <= parting_distance;
         const bool was_touching = c.touching;
         c.touching = held || (was_touching && near);
-        if (c.touching == was_touching || c.facet != whole) continue;
+        if (c.touching == was_touching || c.facet != no_part) continue;
         if (c.touching)
             report_begin(c);
         else
@@ -54,7 +54,7 @@ void WorldState<D>::report_terrain() {
     terrain_touched.clear();
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         const ContactRecord<D>& c = contacts[i];
-        if (c.touching && c.facet != whole) terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
+        if (c.touching && c.facet != no_part) terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
     }
     const auto by_shapes = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
         const auto key = [](const TerrainTouch<D>& t) {

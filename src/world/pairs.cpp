@@ -150,7 +150,7 @@ void WorldState<D>::find_pairs() {
     }
 }
 
-/// Does a shape meet the facets of a terrain here? Sensors care for the whole.
+/// Does a shape meet the facets of a terrain here? Sensors care for the no_part.
 template <int D>
 bool WorldState<D>::is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const {
     const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
@@ -224,7 +224,7 @@ template <int D>
 bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
     const ShapeRecord<D>&a = shapes[c.shape_a], &b = shapes[c.shape_b];
     if (!overlaps(fat_box(a), fat_box(b))) return false;
-    if (c.facet == whole) return true;
+    if (c.facet == no_part) return true;
     const bool a_terrain = a.shape.kind == ShapeKind::terrain;
     const ShapeRecord<D>& ground = a_terrain ? a : b;
     const Aabb<D> box = box_in(frame_of(ground.body), fat_box(a_terrain ? b : a));
@@ -235,7 +235,7 @@ template <int D>
 void WorldState<D>::remove_contact(std::size_t contact) {
     const ContactRecord<D>& c = contacts[contact];
     pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
-    if (c.touching && c.facet == whole) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
+    if (c.touching && c.facet == no_part) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
     contacts[contact] = contacts.back();
     contacts.pop_back();
     caches[contact] = caches.back();
