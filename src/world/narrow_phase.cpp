@@ -112,7 +112,14 @@ void WorldState<D>::collide(double dt) {
     merge_patches();
 }
 
-template void WorldState<2>::collide(double);
-template void WorldState<3>::collide(double);
+#define CAROM_INSTANTIATE(D)                                                                              \
+    template void WorldState<D>::touch(const ContactRecord<D>&, const BodyState<D>&, const BodyState<D>&, \
+                                       double, ContactCache<D>&) const;                                   \
+    template void WorldState<D>::set_points(const ContactCache<D>&, const BodyState<D>&,                  \
+                                            const BodyState<D>&, double, ContactRecord<D>&) const;        \
+    template void WorldState<D>::collide(double);
+CAROM_INSTANTIATE(2)
+CAROM_INSTANTIATE(3)
+#undef CAROM_INSTANTIATE
 
 }  // namespace carom::detail

@@ -161,6 +161,8 @@ void WorldState<D>::finish_bodies() {
     }
 }
 
+template void WorldState<2>::list_awake(std::uint32_t);
+template void WorldState<3>::list_awake(std::uint32_t);
 template void WorldState<2>::step(double);
 template void WorldState<3>::step(double);
 

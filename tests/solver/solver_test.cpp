@@ -244,7 +244,8 @@ TYPED_TEST(SolverIn, NothingPassesThroughWhatStandsStill) {
         Solver<D> solver;
         scene.step(solver);
         for (std::size_t i = 1; i < scene.states.size(); ++i) {
-            if (i != 5) EXPECT_LT(length(scene.states[i].velocity), 0.01) << i;
+            if (i == 5) continue;
+            EXPECT_LT(length(scene.states[i].velocity), 0.01) << i;
         }
     }
 }
