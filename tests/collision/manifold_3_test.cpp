@@ -50,12 +50,23 @@ void expect_sound(const Scene& scene, const Manifold<3>& found, double reach) {
     }
 }
 
+/// Area of the patch: half the cross product of its diagonals, whichever of the pairs of points they are.
+double area_of(const Manifold<3>& manifold) {
+    const auto at = [&](int i) { return manifold.points[static_cast<std::size_t>(i)].position; };
+    if (manifold.count == 3) return 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+    if (manifold.count < 4) return 0;
+    return 0.5 *
+           std::max({length(cross(at(2) - at(0), at(3) - at(1))), length(cross(at(1) - at(0), at(3) - at(2))),
+                     length(cross(at(3) - at(0), at(2) - at(1)))});
+}
+
 /// Are the two the same but for rounding, feature by feature? Where features coincide, rounding may choose
-/// another of their names, for the points of one such place: two at the most.
+/// another of their names, for the points of one such place: two at the most. And where of more than four
+/// points one is as good as another, it may choose that, but the area stays about what it was.
 void expect_same(const Manifold<3>& expected, const Manifold<3>& found, double tolerance) {
     ASSERT_EQ(found.count, expected.count);
     EXPECT_GT(dot(found.normal, expected.normal), 1 - 1e-5);
-    int renamed = 0;
+    int renamed = 0, replaced = 0;
     for (int i = 0; i < found.count; ++i) {
         const ManifoldPoint<3>& point = found.points[static_cast<std::size_t>(i)];
         const auto end = expected.points.begin() + expected.count;
@@ -63,13 +74,19 @@ void expect_same(const Manifold<3>& expected, const Manifold<3>& found, double t
             return length(other.position - point.position) <= tolerance;
         };
         const auto same = std::find_if(expected.points.begin(), end, there);
-        ASSERT_NE(same, end) << "point " << i;
+        if (same == end) {
+            ++replaced;
+            continue;
+        }
         EXPECT_NEAR(same->separation, point.separation, tolerance);
         renamed += std::none_of(expected.points.begin(), end, [&](const ManifoldPoint<3>& other) {
             return there(other) && other.feature == point.feature;
         });
     }
     EXPECT_LE(renamed, found.count > 2 ? 2 : 1);
+    EXPECT_LE(replaced, found.count == 4 ? 1 : 0);
+    const double share = replaced > 0 ? 0.2 : 0.01;
+    EXPECT_NEAR(area_of(found), area_of(expected), share * area_of(expected) + tolerance * tolerance);
 }
 
 /// Does the answer hang on a hair: is the gap, or that of a point, the reach; or is the direction open,
