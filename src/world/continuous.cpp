@@ -111,12 +111,18 @@ std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>
 template <int D>
 void WorldState<D>::stop_at_obstacles() {
     if (!definition.continuous) return;
+    // A one-way shape lets pass what goes out of its open side.
+    const auto lets_pass = [&](const ContactRecord<D>& c, std::uint32_t body, std::uint32_t shape) {
+        if (!c.special || !shapes[shape].definition.one_way) return false;
+        const Vec<D> way = states[body].position - before[place[body]].position;
+        return c.passing || dot(way, rotate(axes_of(shape), *shapes[shape].definition.one_way)) >= 0;
+    };
     for (const FixedContact& f : fixed_contacts) {
         const ContactRecord<D>& c = contacts[f.contact];
-        stop_at(f.body, f.shape, f.other, c.facet);
+        if (!lets_pass(c, f.body, f.other)) stop_at(f.body, f.shape, f.other, c.facet);
     }
     for (const ContactRecord<D>& c : contacts) {
-        if (c.on_fixed) continue;
+        if (c.on_fixed || c.passing) continue;
         if (infos[c.body_a].bullet) stop_at(c.body_a, c.shape_a, c.shape_b, c.facet);
         if (infos[c.body_b].bullet) stop_at(c.body_b, c.shape_b, c.shape_a, c.facet);
     }
@@ -138,7 +144,7 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     // How far the core came as seen from the obstacle.
     const Vec<D> seen_first = apply_inverse(frame(earlier(other_body), masses[other_body]), first);
     const Vec<D> seen_last = apply_inverse(frame_of(other_body), last);
-    if (length(seen_last - seen_first) <= own.core.radius) return;
+    if (length(seen_last - seen_first) <= 0.25 * own.core.radius) return;
 
     const StepMotion<D> sweep(start, states[body]);
     const Obstacle<D> obstacle{shapes[other].shape, facet,

@@ -164,6 +164,7 @@ void WorldState<D>::drag_along(ContactRecord<D>& c) const {
     template bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>&, const BodyState<D>&,      \
                                                      const BodyState<D>&, const ContactRecordPoint<D>&) \
         const;                                                                                          \
+    template Rotation<D> WorldState<D>::axes_of(std::uint32_t) const;                                   \
     template void WorldState<D>::pass_one_way(ContactRecord<D>&, bool) const;                           \
     template void WorldState<D>::drag_along(ContactRecord<D>&) const;
 CAROM_INSTANTIATE(2)

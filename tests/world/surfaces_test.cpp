@@ -151,6 +151,24 @@ TYPED_TEST(Surfaces, a_one_way_platform_lets_pass_from_below_and_holds_from_abov
     EXPECT_NEAR(world.position(id).y, 2.35, 2e-3);      // and then it stands on it
 }
 
+TYPED_TEST(Surfaces, a_one_way_platform_knows_the_sides_of_what_is_fast) {
+    constexpr int D = TypeParam::value;
+    for (const double speed : {60.0, 400.0}) {
+        for (const double side : {-1.0, 1.0}) {
+            World<D> world(no_gravity<D>());
+            BodyDefinition<D> platform = fixed_of<D>(Box<D>{vec<D>(4, 0.2, 4)});
+            platform.shapes[0].one_way = vec<D>(0, 1);
+            world.add_body(platform);
+            BodyDefinition<D> shot = body_of<D>(Ball{0.1}, vec<D>(0, 3 * side));
+            shot.velocity = vec<D>(0, -speed * side);
+            const BodyId<D> id = world.add_body(shot);
+            run(world, 20);
+            const double expected = side > 0 ? 0.2 : -3 + speed / 3;
+            EXPECT_NEAR(world.position(id).y, expected, 2e-3) << "speed " << speed << ", side " << side;
+        }
+    }
+}
+
 TYPED_TEST(Surfaces, a_body_placed_inside_a_one_way_platform_falls_out) {
     constexpr int D = TypeParam::value;
     World<D> world(sleepless<D>());
