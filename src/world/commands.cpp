@@ -179,10 +179,13 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     body_mass<D>(w.infos[body].definition, all);
 
     const Filter &before = w.shapes[i].definition.filter, &now = definition.filter;
-    const bool same_company = w.shapes[i].definition.sensor == definition.sensor &&
+    // Contacts with a terrain name its facets, which are others now.
+    const bool is_ground = made.kind == ShapeKind::terrain || w.shapes[i].shape.kind == ShapeKind::terrain;
+    const bool same_company = !is_ground && w.shapes[i].definition.sensor == definition.sensor &&
                               before.category == now.category && before.mask == now.mask &&
                               before.group == now.group;
     w.wake_neighbours(body);
+    w.wake_islands();
     if (!same_company) {
         w.remove_contacts_of_shape(i);
         w.remove_visits_of(i);
@@ -217,11 +220,8 @@ void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
     };
     change(i, k);
     change(k, i);
-    for (std::size_t c = 0; c < w.contacts.size();) {
-        const ContactRecord<D>& contact = w.contacts[c];
-        const bool theirs = std::minmax(contact.body_a, contact.body_b) == std::minmax(i, k);
-        theirs ? w.remove_contact(c) : void(++c);
-    }
+    w.remove_contacts_if(
+        [&](const ContactRecord<D>& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(i, k); });
     for (const ShapeId<D>& id : w.infos[i].shapes) w.mark_moved(id.index);
 }
 

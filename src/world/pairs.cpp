@@ -150,7 +150,7 @@ void WorldState<D>::find_pairs() {
     }
 }
 
-/// Does a shape meet the facets of a terrain here? Sensors care for the no_part.
+/// Does a shape meet the facets of a terrain here? Sensors care for the whole.
 template <int D>
 bool WorldState<D>::is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const {
     const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
@@ -252,10 +252,7 @@ void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
 
 template <int D>
 void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
-    for (std::size_t i = 0; i < contacts.size();) {
-        const bool its_own = contacts[i].shape_a == shape || contacts[i].shape_b == shape;
-        its_own ? remove_contact(i) : void(++i);
-    }
+    remove_contacts_if([&](const ContactRecord<D>& c) { return c.shape_a == shape || c.shape_b == shape; });
 }
 
 template <int D>
@@ -282,10 +279,7 @@ void WorldState<D>::remove_visits_of(std::uint32_t shape) {
 
 template <int D>
 void WorldState<D>::remove_contacts_of(std::uint32_t body) {
-    for (std::size_t i = 0; i < contacts.size();) {
-        const bool its_own = contacts[i].body_a == body || contacts[i].body_b == body;
-        its_own ? remove_contact(i) : void(++i);
-    }
+    remove_contacts_if([&](const ContactRecord<D>& c) { return c.body_a == body || c.body_b == body; });
 }
 
 #define CAROM_INSTANTIATE(D)                                                             \

@@ -241,6 +241,10 @@ struct WorldState {
     std::uint32_t index(BodyId<D> body) const;
     std::uint32_t index(ShapeId<D> shape) const;
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
+    template <class Condition>
+    void remove_contacts_if(const Condition& condition) {
+        for (std::size_t i = 0; i < contacts.size();) condition(contacts[i]) ? remove_contact(i) : void(++i);
+    }
     void remove_contacts_of(std::uint32_t body);
     void remove_contact(std::size_t contact);
     void remove_contacts_of_shape(std::uint32_t shape);

@@ -174,5 +174,30 @@ TYPED_TEST(Events, a_shape_is_changed_in_its_place) {
     EXPECT_EQ(world.hash(), before);
 }
 
+/// Contacts with ground name its facets, so none may outlive it.
+TYPED_TEST(Events, ground_is_changed_under_what_lies_on_it) {
+    constexpr int D = TypeParam::value;
+    const auto flat = [](int cells) -> Geometry<D> {
+        HeightField<D> field;
+        if constexpr (D == 2)
+            field.heights.assign(static_cast<std::size_t>(cells) + 1, 0.0);
+        else
+            field.heights.assign(static_cast<std::size_t>(cells) + 1,
+                                 std::vector<double>(static_cast<std::size_t>(cells) + 1, 0.0));
+        field.spacing.fill(20.0 / cells);
+        return field;
+    };
+    World<D> world(sleepless<D>());
+    const ShapeId<D> ground_shape =
+        world.shapes(world.add_body(fixed_of<D>(flat(80), vec<D>(-10, 0, -10))))[0];
+    const BodyId<D> box = world.add_body(body_of<D>(cube<D>(1), vec<D>(5, 0.5, 5)));
+    for (const Geometry<D>& next : {flat(2), Geometry<D>(Box<D>{vec<D>(60, 0.02, 60)}), flat(40)}) {
+        run(world, 60);
+        world.set_shape(ground_shape, shape_of<D>(next));
+    }
+    run(world, 60);
+    EXPECT_NEAR(world.position(box).y, 0.5, 0.02);
+}
+
 }  // namespace
 }  // namespace carom::test
