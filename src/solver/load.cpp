@@ -8,7 +8,7 @@ namespace carom::detail {
 /// Slots for the bodies that move: first those that only the user moves, then those that contacts push.
 template <int D>
 void Solver<D>::find_slots(const SolverInput<D>& input) {
-    slot_of_.resize(input.states.size(), 0);
+    slot_of_.assign(input.states.size(), 0);
     bodies_.assign(1, 0);
     const auto take = [&](std::uint32_t body, bool dynamic) {
         if (!input.moving[body] || slot_of_[body] != 0 || (input.types[body] == BodyType::dynamic) != dynamic)
@@ -21,6 +21,10 @@ void Solver<D>::find_slots(const SolverInput<D>& input) {
             take(input.contacts[i].body_a, dynamic);
             take(input.contacts[i].body_b, dynamic);
         }
+        for (const std::uint32_t i : input.active_joints) {
+            if (input.joints[i].body_a != no_body) take(input.joints[i].body_a, dynamic);
+            take(input.joints[i].body_b, dynamic);
+        }
         if (!dynamic) view_.first_movable = static_cast<std::uint32_t>(bodies_.size());
     }
     pairs_.clear();
@@ -28,7 +32,6 @@ void Solver<D>::find_slots(const SolverInput<D>& input) {
         const std::uint32_t a = input.contacts[i].body_a, b = input.contacts[i].body_b;
         pairs_.push_back({slot_of_[a], slot_of_[b], pair_key(a, b)});
     }
-    for (const std::uint32_t body : bodies_) slot_of_[body] = 0;
 }
 
 template <int D>
@@ -94,6 +97,12 @@ void Solver<D>::load_body(const SolverInput<D>& input, std::uint32_t slot) {
             drive.spin_damping = static_cast<float>(1 - Decay(mass.angular_damping, h).factor);
     }
     drives_.set(slot, drive);
+}
+
+template <int D>
+void Solver<D>::prepare_joints(const SolverInput<D>& input) {
+    joints_.prepare({input.joints, input.active_joints, input.states, input.masses, slot_of_, view_,
+                     bodies_.size(), input.step / input.substeps});
 }
 
 template <int D>
@@ -243,6 +252,7 @@ void Solver<D>::store(const SolverInput<D>& input) {
             if (contact != none) store_contact(section, place, input.contacts[input.active[contact]]);
         }
     }
+    joints_.store(input.joints);
     for (std::uint32_t slot = view_.first_movable; slot < bodies_.size(); ++slot) {
         BodyState<D>& state = input.states[bodies_[slot]];
         const Motion<D, float> m = gather<float>(view_, &slot).motion;
@@ -256,6 +266,7 @@ void Solver<D>::store(const SolverInput<D>& input) {
 
 #define CAROM_INSTANTIATE(D)                                                       \
     template void Solver<D>::gather_bodies(const SolverInput<D>&);                 \
+    template void Solver<D>::prepare_joints(const SolverInput<D>&);                \
     template bool Solver<D>::carries_impulse(const LaneStore<Rows>&, std::size_t); \
     template float Solver<D>::speed_taken(const LaneStore<Rows>&, std::size_t);    \
     template void Solver<D>::deal_contacts(const SolverInput<D>&);                 \

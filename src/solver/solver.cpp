@@ -43,11 +43,12 @@ void Solver<D>::each_section(Pass&& pass) {
 
 template <int D>
 void Solver<D>::run(const SolverInput<D>& input) {
-    if (input.active.empty()) return;
+    if (input.active.empty() && input.active_joints.empty()) return;
     set_lengths(input);
     passes_ = &passes_of_width<D>(lane_width());
     gather_bodies(input);
-    deal_contacts(input);  // and apply the impulses that they have kept
+    prepare_joints(input);  // and apply the impulses that they have kept
+    deal_contacts(input);   // the same
 
     sums_begun_ = false;
     passes_->begin_warm(body_span(), h_);
@@ -63,12 +64,14 @@ template <int D>
 void Solver<D>::step_through(int substeps) {
     passes_->integrate_velocities(body_span(), h_);
     for (int i = 0; i < substeps; ++i) {
+        joints_.solve(view_);
         each_section([&](auto span, auto& passes) {
             (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
         });
         const bool some_struck = find_struck();
         if (some_struck) settle_struck<true>();
         passes_->integrate_positions(body_span(), h_);
+        joints_.relax(view_);
         each_section([&](auto span, auto& passes) { passes.relax(span, view_, sub_); });
         if (some_struck) {
             settle_struck<false>();

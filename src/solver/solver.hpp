@@ -12,6 +12,7 @@
 #include "solver/blocks.hpp"
 #include "solver/bounce.hpp"
 #include "solver/colours.hpp"
+#include "solver/joint_solver.hpp"
 #include "solver/lane_store.hpp"
 #include "solver/passes.hpp"
 
@@ -20,7 +21,7 @@ namespace carom::detail {
 /// One step as the solver sees it.
 template <int D>
 struct SolverInput {
-    std::span<BodyState<D>> states;  ///< of all bodies; those in contact are moved on
+    std::span<BodyState<D>> states;  ///< of all bodies; those in contact or on joints are moved on
     std::span<const BodyMass<D>> masses;
     std::span<const BodyType> types;
     std::span<const std::uint8_t>
@@ -31,9 +32,11 @@ struct SolverInput {
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
+    std::span<JointRecord<D>> joints{};              ///< all; impulses are read and written
+    std::span<const std::uint32_t> active_joints{};  ///< indices of those that hold a body which moves freely
 };
 
-/// Moves the bodies that are in contact through one step. An object of it keeps its buffers from step to
+/// Moves the bodies that are in contact, or held by joints, through one step. An object of it keeps its buffers from step to
 /// step, so that a steady step allocates nothing; it holds no state that matters to the result.
 template <int D>
 class Solver {
@@ -80,6 +83,7 @@ class Solver {
     void gather_bodies(const SolverInput<D>& input);
     void find_slots(const SolverInput<D>& input);
     void load_body(const SolverInput<D>& input, std::uint32_t slot);
+    void prepare_joints(const SolverInput<D>& input);
     void deal_contacts(const SolverInput<D>& input);
     void fill_section(const SolverInput<D>& input, Section& section);
     void fill_block(const SolverInput<D>& input, Section& section, std::size_t block);
@@ -120,6 +124,7 @@ class Solver {
 
     std::vector<SlotPair> pairs_;  ///< by active contact
     Colours colours_;
+    JointSolver<D> joints_;
     std::array<Section, 2> sections_;
     std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
     bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`

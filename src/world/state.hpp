@@ -12,7 +12,9 @@
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/islands.hpp"
+#include "dynamics/joint.hpp"
 #include "geometry/shape.hpp"
+#include "solver/joint_load.hpp"
 #include "solver/solver.hpp"
 #include "world/contact_cache.hpp"
 
@@ -65,6 +67,7 @@ struct EventBuffers {
     std::vector<ContactHit<D>> contact_hits;
     std::vector<SensorBegin<D>> sensor_begins;
     std::vector<SensorEnd<D>> sensor_ends;
+    std::vector<JointBreak<D>> joint_breaks;
 
     void clear() {
         contact_begins.clear();
@@ -72,6 +75,7 @@ struct EventBuffers {
         contact_hits.clear();
         sensor_begins.clear();
         sensor_ends.clear();
+        joint_breaks.clear();
     }
 };
 
@@ -103,6 +107,12 @@ struct WorldState {
 
     Forces<D> forces;
 
+    // Joints, by index.
+    Slots joint_slots;
+    std::vector<JointRecord<D>> joints;
+    std::vector<JointDefinition<D>> joint_definitions;
+    std::vector<JointId<D>> joint_ids;  ///< all that are in use, oldest first
+
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
     std::vector<ContactCache<D>> caches;  ///< by contact: where its points were found
@@ -122,6 +132,7 @@ struct WorldState {
     std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
     std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
     std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
+    std::vector<std::uint32_t> active_joints;  ///< indices of the joints that the solver sees
     std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
@@ -142,7 +153,7 @@ struct WorldState {
     void begin_step(double dt);
     void list_awake(std::uint32_t body);
     void sum_forces();
-    void solve_contacts(double dt);
+    void solve_constraints(double dt);
     void fly_free_bodies(double dt);
     void move_kinematic_bodies(double dt);
     void finish_bodies();
@@ -210,6 +221,18 @@ struct WorldState {
     void wake_neighbours(std::uint32_t body);
     void fall_asleep(double dt);
     void join_islands();
+
+    // joints.cpp: what binds bodies.
+    void list_active_joints();
+    void wake_jointed();
+    void break_joints();
+    template <class Visit>
+    void each_bond(const Visit& visit) const;
+    void remove_joint(std::uint32_t joint);
+    void remove_joints_of(std::uint32_t body);
+    std::uint32_t index(JointId<D> joint) const;
+    JointPose<D> joint_pose(std::uint32_t joint) const { return pose_of<D>(joints[joint], states, masses); }
+    Load<D> joint_load(std::uint32_t joint) const;
 
     // queries.cpp: questions between steps.
     void keep_in_boxes(double dt);

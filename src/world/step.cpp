@@ -50,7 +50,7 @@ void WorldState<D>::step(double dt) {
     collide(dt);                // narrow phase: manifolds, impulses carried over
     wake_touched(dt);           // sleepers that are being hit
     sum_forces();               // gravity, the user's forces, generators
-    solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
+    solve_constraints(dt);      // bodies in contact or on joints: sub-steps of the solver
     fly_free_bodies(dt);        // all others: the integrator
     move_kinematic_bodies(dt);  // what only the user moves
     stop_at_obstacles();        // nothing passes through what stands still
@@ -58,6 +58,7 @@ void WorldState<D>::step(double dt) {
     keep_in_boxes(dt);          // queries find the bodies where they are now
     report_contacts();          // what began, ended and hit
     sense();                    // who is inside the sensors
+    break_joints();             // those that were pulled too hard
     fall_asleep(dt);            // islands at rest
 
     time += dt;
@@ -111,7 +112,7 @@ void WorldState<D>::sum_forces() {
 }
 
 template <int D>
-void WorldState<D>::solve_contacts(double dt) {
+void WorldState<D>::solve_constraints(double dt) {
     active.clear();
     touched.resize(states.size());
     for (const std::uint32_t i : awake) touched[i] = 0;
@@ -122,8 +123,9 @@ void WorldState<D>::solve_contacts(double dt) {
         active.push_back(i);
         touched[c.body_a] = touched[c.body_b] = 1;
     }
+    list_active_joints();
     solver.run({states, masses, types, moving, loads, contacts, active, dt, definition.substeps,
-                definition.restitution_threshold});
+                definition.restitution_threshold, joints, active_joints});
 }
 
 template <int D>
