@@ -115,6 +115,30 @@ struct WheelJoint {
     std::optional<JointLimits> steering_limits{};  ///< 3D, rad, within ±π
 };
 
+/// A rope from a over two points of the world to b: |anchor_a − ground_a| + ratio · |anchor_b − ground_b| is
+/// at most what it is at the start. Coordinate: that sum.
+template <int D>
+struct PulleyJoint {
+    std::optional<Vec<D>> anchor_a{}, anchor_b{};
+    Vec<D> ground_a{}, ground_b{};
+    double ratio = 1;  ///< positive
+};
+
+/// Couples the angles of two hinges (or wheels) as gears that mesh: angle_b = −ratio · angle_a. It names its
+/// joints; `a` and `b` of the definition stay empty.
+template <int D>
+struct GearJoint {
+    JointId<D> joint_a{}, joint_b{};
+    double ratio = 1;  ///< not zero
+};
+
+/// Couples a hinge and a slider as pinion and rack: way_b = ratio · angle_a. Bodies as for the gear.
+template <int D>
+struct RackJoint {
+    JointId<D> joint_a{}, joint_b{};
+    double ratio = 1;  ///< m/rad, not zero
+};
+
 /// Drives b to a pose in the frame of a, by limited force and torque.
 template <int D>
 struct MotorJoint {
@@ -148,7 +172,7 @@ struct ParallelJoint {
 template <int D>
 struct JointDefinition {
     std::variant<HingeJoint<D>, SliderJoint<D>, BallJoint<D>, WeldJoint<D>, DistanceJoint<D>, WheelJoint<D>,
-                 MotorJoint<D>, TargetJoint<D>, ParallelJoint<D>>
+                 MotorJoint<D>, TargetJoint<D>, ParallelJoint<D>, PulleyJoint<D>, GearJoint<D>, RackJoint<D>>
         kind{};
     std::optional<BodyId<D>> a{};  ///< the world when left out
     BodyId<D> b{};

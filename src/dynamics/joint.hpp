@@ -147,6 +147,9 @@ constexpr int most_kept = 18;  ///< floats
 
 constexpr std::uint32_t no_body = 0xffffffffu;
 
+/// Layout of a joint that is a coupling: it has no rows of its own.
+constexpr std::uint32_t no_layout = 0xffffffffu;
+
 /// A joint between two bodies. Frame and anchor of the world, where there is no body a, are those of the
 /// world.
 template <int D>
@@ -159,6 +162,18 @@ struct JointRecord {
     HeldSettings held;
     Wrench<D, float> wrench{};       ///< impulse of the last sub-step, N·s: force, and torques about the centres
     std::array<float, most_kept> kept{};  ///< impulses of the rows in the last sub-step
+};
+
+/// A joint that couples two coordinates, each between two bodies: the sum of factor · coordinate stays what it
+/// is, or at most that (a rope).
+template <int D>
+struct CouplingRecord {
+    std::uint32_t joint = 0;                 ///< its place among the joints of the world
+    std::array<JointRecord<D>, 2> ends;      ///< each with one drive, whose coordinate it is
+    std::array<double, 2> factors{};
+    double sum = 0;
+    bool is_rope = false;
+    float kept = 0;                          ///< impulse of the last sub-step
 };
 
 }  // namespace carom::detail

@@ -50,21 +50,11 @@ struct JointPass {
     }
     CAROM_INLINE static Wrench<D, F> couple(const Angular<D, F>& l) { return {{}, l, l}; }
 
-    /// How an impulse that should bring `speed` to zero, and with it `error`, is found from the effective
-    /// mass: the change is −mass · (scale · (speed + rate · error)) − keep · old.
-    CAROM_INLINE F wanted(F speed, F error) const {
-        if constexpr (biased) return step.soft.mass_scale * (speed + step.soft.bias_rate * error);
-        return speed;
-    }
+    /// The error of which this sub-step puts a share right.
+    CAROM_INLINE F to_mend(F error) const { return step.share * cut_to(error, step.most_way); }
     template <class V>
-    CAROM_INLINE V wanted(const V& speed, const V& error) const {
-        if constexpr (biased) return step.soft.mass_scale * (speed + step.soft.bias_rate * error);
-        return speed;
-    }
-    template <class V>
-    CAROM_INLINE V softened(const V& change, const V& old) const {
-        if constexpr (biased) return change - step.soft.impulse_scale * old;
-        return change;
+    CAROM_INLINE V to_mend(const V& error) const {
+        return step.share * cut_to(error, step.most_way);
     }
 
     // ---- Linear part ----
@@ -85,11 +75,11 @@ struct JointPass {
 
     CAROM_INLINE void solve_linear() {
         if constexpr (L.linear == LinearPart::point) {
-            Vec<D, F>& p = rows.kept.linear;
-            const Vec<D, F> change = softened(
-                Vec<D, F>(-point_impulse(link, g.arm_a.middle, g.arm_b.middle, wanted(g.speed(link), g.gap))), p);
-            p += change;
+            const Vec<D, F> change = -point_impulse(link, g.arm_a.middle, g.arm_b.middle, g.speed(link));
+            rows.kept.linear += change;
             link.push(g.at_anchors(change));
+            if constexpr (biased)
+                link.shift(g.at_anchors(-point_impulse(link, g.arm_a.middle, g.arm_b.middle, to_mend(g.gap))));
         } else if constexpr (L.linear == LinearPart::held) {
             auto& held = rows.linear;
             if constexpr (biased) held.offset = held.spring.pull * g.gap + held.spring.keep * held.before;
@@ -113,9 +103,10 @@ struct JointPass {
         if constexpr (D == 2) {
             const Turned<D, F> t = across(0);
             const F mass = inverse_or_zero(compliance(t.middle, arm_a, g.arm_b.middle, link.wa, link.wb));
-            const F change = softened(-(mass * wanted(dot(t.end, speed), dot(t.now, g.gap))), p[0]);
+            const F change = -(mass * dot(t.end, speed));
             p[0] = p[0] + change;
             link.push(g.at_b(change * t.middle));
+            if constexpr (biased) link.shift(g.at_b(-(mass * to_mend(dot(t.now, g.gap))) * t.middle));
         } else {
             const Turned<D, F> s = across(0), t = across(1);
             const Vec<3, F> as = cross(arm_a, s.middle), at = cross(arm_a, t.middle);
@@ -125,13 +116,16 @@ struct JointPass {
             const F xy = dot(t.middle, each(mass, s.middle)) + dot(at, ias) + dot(bt, ibs);
             const F yy = dot(t.middle, each(mass, t.middle)) + dot(at, link.wa.inertia * at) +
                          dot(bt, link.wb.inertia * bt);
-            const Vec<2, F> want{wanted(dot(s.end, speed), dot(s.now, g.gap)),
-                                 wanted(dot(t.end, speed), dot(t.now, g.gap))};
-            const Vec<2, F> impulse = inverse_times(xx, xy, yy, want);
-            const F first = softened(-impulse.x, p[0]), second = softened(-impulse.y, p[1]);
-            p[0] = p[0] + first;
-            p[1] = p[1] + second;
-            link.push(g.at_b(first * s.middle + second * t.middle));
+            const auto along_both = [&](const Vec<2, F>& v) CAROM_INLINE_LAMBDA {
+                return g.at_b(v.x * s.middle + v.y * t.middle);
+            };
+            const Vec<2, F> change = -inverse_times(xx, xy, yy, Vec<2, F>{dot(s.end, speed), dot(t.end, speed)});
+            p[0] = p[0] + change.x;
+            p[1] = p[1] + change.y;
+            link.push(along_both(change));
+            if constexpr (biased)
+                link.shift(along_both(-inverse_times(
+                    xx, xy, yy, to_mend(Vec<2, F>{dot(s.now, g.gap), dot(t.now, g.gap)}))));
         }
     }
 
@@ -171,10 +165,10 @@ struct JointPass {
             Angular<D, F>& l = rows.kept.angular;
             const Angular<D, F> error = rows.angular.turn + relative_turn<D, F>(link.a.turned, link.b.turned);
             const Inertia<D, F> mass = inverse_or_zero(link.angular_compliance());
-            const Angular<D, F> change =
-                softened(Angular<D, F>(-(mass * wanted(link.spin(), error))), l);
+            const Angular<D, F> change = -(mass * link.spin());
             l = l + change;
             link.push(couple(change));
+            if constexpr (biased) link.shift(couple(-(mass * to_mend(error))));
         } else if constexpr (L.angular == AngularPart::across) {
             solve_across();
         } else if constexpr (L.angular == AngularPart::square) {
@@ -182,9 +176,10 @@ struct JointPass {
             F& l = rows.kept.angular;
             const F mass =
                 inverse_or_zero(dot(axes.normal_middle, link.angular_compliance() * axes.normal_middle));
-            const F change = softened(-(mass * wanted(dot(axes.normal_end, link.spin()), axes.error)), l);
+            const F change = -(mass * dot(axes.normal_end, link.spin()));
             l = l + change;
             link.push(couple(change * axes.normal_middle));
+            if constexpr (biased) link.shift(couple(-(mass * to_mend(axes.error)) * axes.normal_middle));
         } else if constexpr (L.angular == AngularPart::held) {
             solve_held_turn();
         }
@@ -197,13 +192,15 @@ struct JointPass {
         const Symmetric3<F> k = link.angular_compliance();
         const Vec<3, F> ks = k * s;
         const Vec<3, F> spin = link.spin();
-        const Vec<3, F> want = wanted(Vec<3, F>(spin - dot(a.end, spin) * a.end), cross(a.now, b));
-        const Vec<2, F> impulse =
-            inverse_times(dot(s, ks), dot(t, ks), dot(t, k * t), Vec<2, F>{dot(s, want), dot(t, want)});
-        const Vec<3, F> change =
-            softened(Vec<3, F>(-(impulse.x * s + impulse.y * t)), rows.kept.angular);
+        const auto impulse = [&](const Vec<3, F>& wanted) CAROM_INLINE_LAMBDA {
+            const Vec<2, F> l =
+                inverse_times(dot(s, ks), dot(t, ks), dot(t, k * t), Vec<2, F>{dot(s, wanted), dot(t, wanted)});
+            return -(l.x * s + l.y * t);
+        };
+        const Vec<3, F> change = impulse(spin - dot(a.end, spin) * a.end);
         rows.kept.angular += change;
         link.push(couple(change));
+        if constexpr (biased) link.shift(couple(impulse(to_mend(cross(a.now, b)))));
     }
 
     CAROM_INLINE void solve_held_turn() {
@@ -292,18 +289,12 @@ struct JointPass {
             return F(0.5f) * dot(rows.drives[i].axis + n.now, turn);
     }
 
-    /// A limit that lies `gap` away, with the row pointing away from it: the new impulse. Without a range
-    /// between the limits the row holds both ways.
+    /// A limit that lies `gap` away, with the row pointing away from it: the new impulse. The gap is left to
+    /// close by itself. Without a range between the limits the row holds both ways.
     template <class Mask>
     CAROM_INLINE F limit(F gap, F approach, F mass, F old, Mask ranged) const {
-        const auto open = (gap > F(0)) & ranged;
-        F bias = select(open, gap * step.inverse_h, F(0)), scale = F(1), keep = F(0);
-        if constexpr (biased) {
-            bias = select(open, bias, cut_to(step.soft.bias_rate * gap, step.push_speed));
-            scale = select(open, F(1), step.soft.mass_scale);
-            keep = select(open, F(0), step.soft.impulse_scale);
-        }
-        return maximum(select(ranged, F(0), F(-1e37f)), old - mass * (scale * (approach + bias)) - keep * old);
+        const F free = select(both(gap > F(0), ranged), gap * step.inverse_h, F(0));
+        return maximum(select(ranged, F(0), F(-1e37f)), old - mass * (approach + free));
     }
 
     template <int i>
@@ -326,10 +317,13 @@ struct JointPass {
             set(kept.motor, cut_to(kept.motor - mass * (speed<i>(n) - base.motor_speed), base.motor_most),
                 F(1));
             const auto ranged = base.high > base.low;
-            set(kept.low, limit(now - base.low, speed<i>(n), mass, kept.low, ranged), F(1));
-            set(kept.high,
-                limit(select(ranged, base.high - now, F(1e18f)), -speed<i>(n), mass, kept.high, base.high > F(-2e18f)),
-                F(-1));
+            const F above = now - base.low, below = select(ranged, base.high - now, F(1e18f));
+            set(kept.low, limit(above, speed<i>(n), mass, kept.low, ranged), F(1));
+            set(kept.high, limit(below, -speed<i>(n), mass, kept.high, base.low > F(-2e18f)), F(-1));
+            if constexpr (biased) {
+                const F error = select(ranged, minimum(above, F(0)) - minimum(below, F(0)), above);
+                link.shift(along<i>(n, -(mass * to_mend(error))));
+            }
             if constexpr (!biased) base.before = speed<i>(n);
         }
     }

@@ -13,6 +13,11 @@
 /// in the length of a sub-step, so that what swings on joints keeps its energy. As the solver warm-starts a
 /// sub-step with the change of velocity of the one before, a joint first turns its impulses into their new
 /// directions (`re_aim`).
+///
+/// Errors of position are put right by moving the bodies, not by giving them a velocity: a velocity would be
+/// kept by warm starting until all joints of a chain have agreed to take it back, and long chains swing up
+/// or have to be made soft. So the impulses hold forces alone, come to rest where forces balance, and what
+/// hangs at rest does not sag.
 namespace carom::detail {
 
 /// What the joints of a sub-step share.
@@ -20,8 +25,8 @@ template <class F>
 struct JointStep {
     F h{};
     F inverse_h{};
-    F push_speed{};  ///< the fastest that a limit is pushed back, m/s and rad/s
-    Softness<F> soft{};
+    F share{};      ///< of an error of position that is put right in a sub-step
+    F most_way{};   ///< the furthest that something is put right in a sub-step, m and rad
 };
 
 // ---- What is kept from sub-step to sub-step, and from step to step: impulses of the rows ----
@@ -230,6 +235,13 @@ struct Link {
         applied.force += w.force;
         applied.on_a = applied.on_a + w.on_a;
         applied.on_b = applied.on_b + w.on_b;
+    }
+    /// Moves the bodies as the impulse moves velocities.
+    CAROM_INLINE void shift(const Wrench<D, F>& w) {
+        a.moved -= each(wa.mass, w.force);
+        a.turned = a.turned - wa.inertia * w.on_a;
+        b.moved += each(wb.mass, w.force);
+        b.turned = b.turned + wb.inertia * w.on_b;
     }
     CAROM_INLINE Angular<D, F> spin() const { return b.w - a.w; }
     CAROM_INLINE Inertia<D, F> angular_compliance() const { return wa.inertia + wb.inertia; }

@@ -3,35 +3,17 @@
 #include <algorithm>
 #include <bit>
 
-#include "math/trig.hpp"
 #include "simd/width.hpp"
 #include "solver/joint_load.hpp"
 
 namespace carom::detail {
 
-namespace {
-
-constexpr double joint_frequency = 60;  // Hz, and no more than a quarter of the sub-step rate
-constexpr double joint_damping_ratio = 2;
-constexpr float limit_push_speed = 4;  // m/s and rad/s
-
-/// As in solver/solver.cpp; see `Softness`.
-Softness<float> joint_softness(double h) {
-    const double omega = 2 * pi * std::min(joint_frequency, 0.25 / h);
-    const double a1 = 2 * joint_damping_ratio + h * omega;
-    const double a2 = h * omega * a1;
-    const double a3 = 1 / (1 + a2);
-    return {static_cast<float>(omega / a1), static_cast<float>(a2 * a3), static_cast<float>(a3)};
-}
-
-}  // namespace
-
 template <int D>
 void JointSolver<D>::prepare(const JointInput<D>& input) {
     batches_.clear();
+    couplings_.prepare(input);
     if (input.active.empty()) return;
-    const double h = input.substep;
-    step_ = {static_cast<float>(h), static_cast<float>(1 / h), limit_push_speed, joint_softness(h)};
+    step_ = joint_step(input.substep);
     wide_ = &joint_programs<D>(lane_width());
     colour(input);
     make_batches(input);
@@ -42,13 +24,12 @@ void JointSolver<D>::prepare(const JointInput<D>& input) {
 /// Greedy colouring in the order of the joints: the first colour that neither body has yet.
 template <int D>
 void JointSolver<D>::colour(const JointInput<D>& input) {
-    taken_.assign(input.slot_count, 0);
+    taken_.assign(input.slots.size(), 0);
     colour_.resize(input.active.size());
     const auto is_movable = [&](std::uint32_t slot) { return slot >= input.bodies.first_movable; };
     for (std::size_t i = 0; i < input.active.size(); ++i) {
         const JointRecord<D>& joint = input.joints[input.active[i]];
-        const std::uint32_t a = joint.body_a == no_body ? nobody : input.slots[joint.body_a];
-        const std::uint32_t b = input.slots[joint.body_b];
+        const std::uint32_t a = input.slot_of(joint.body_a), b = input.slot_of(joint.body_b);
         const std::uint64_t taken = (is_movable(a) ? taken_[a] : 0) | (is_movable(b) ? taken_[b] : 0);
         const int free = std::countr_one(taken);
         const std::uint64_t bit = free == overflow ? 0 : std::uint64_t{1} << free;
@@ -78,8 +59,8 @@ void JointSolver<D>::make_batches(const JointInput<D>& input) {
         }
     }
     joint_.assign(places, none);
-    a_.assign(places, nobody);
-    b_.assign(places, nobody);
+    a_.assign(places, BodySlots::still);
+    b_.assign(places, BodySlots::still);
     some_fixed_.assign(blocks, 0);
     // Lanes without a joint are to hold zeros.
     lines_.assign((floats + 15) / 16, Line{});
@@ -87,8 +68,8 @@ void JointSolver<D>::make_batches(const JointInput<D>& input) {
         const JointRecord<D>& joint = input.joints[input.active[i]];
         const std::size_t place = next[colour_[i]][joint.layout]++;
         joint_[place] = input.active[i];
-        a_[place] = joint.body_a == no_body ? nobody : input.slots[joint.body_a];
-        b_[place] = input.slots[joint.body_b];
+        a_[place] = input.slot_of(joint.body_a);
+        b_[place] = input.slot_of(joint.body_b);
     }
 }
 
@@ -125,22 +106,25 @@ JointSpan JointSolver<D>::span(const Batch& batch) {
 
 template <int D>
 void JointSolver<D>::solve(const RecordView<D>& bodies) {
+    couplings_.solve(bodies);
     for (const Batch& batch : batches_) program(batch).solve(span(batch), bodies, step_);
 }
 
 template <int D>
 void JointSolver<D>::relax(const RecordView<D>& bodies) {
+    couplings_.relax(bodies);
     for (const Batch& batch : batches_) program(batch).relax(span(batch), bodies, step_);
 }
 
 template <int D>
-void JointSolver<D>::store(std::span<JointRecord<D>> joints) const {
+void JointSolver<D>::store(const JointInput<D>& input) const {
+    couplings_.store(input);
     for (const Batch& batch : batches_) {
         const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
         for (std::size_t i = 0; i < batch.blocks * batch.width; ++i) {
             const std::uint32_t joint = joint_[batch.first_place + i];
             if (joint == none) continue;
-            loader.store(joints[joint],
+            loader.store(input.joints[joint],
                          rows(batch) + i / batch.width * loader.fields * batch.width + i % batch.width, batch.width);
         }
     }

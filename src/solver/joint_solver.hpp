@@ -5,24 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/body.hpp"
-#include "dynamics/joint.hpp"
+#include "solver/couplings.hpp"
+#include "solver/joint_input.hpp"
 #include "solver/joint_passes.hpp"
 
 namespace carom::detail {
-
-/// A step as the joints see it.
-template <int D>
-struct JointInput {
-    std::span<JointRecord<D>> joints;       ///< all; impulses are read and written
-    std::span<const std::uint32_t> active;  ///< indices of those that hold a body which moves freely
-    std::span<const BodyState<D>> states;
-    std::span<const BodyMass<D>> masses;
-    std::span<const std::uint32_t> slots;  ///< by body: where the solver keeps it
-    RecordView<D> bodies;
-    std::size_t slot_count = 0;
-    double substep = 0;  ///< length, s
-};
 
 /// Joints in the sub-steps of the solver. Those of one colour share no body that can be pushed, and those of
 /// one colour and layout lie in blocks of as many lanes as the processor has.
@@ -35,10 +22,9 @@ class JointSolver {
     void solve(const RecordView<D>& bodies);
     void relax(const RecordView<D>& bodies);
     /// Gives the records their impulses.
-    void store(std::span<JointRecord<D>> joints) const;
+    void store(const JointInput<D>& input) const;
 
   private:
-    static constexpr std::uint32_t nobody = 0;  ///< slot of what cannot be pushed
     static constexpr std::uint32_t none = ~std::uint32_t{0};
     static constexpr int colours = 64, overflow = colours;
     static constexpr std::size_t layout_count = layouts<D>.size();
@@ -70,6 +56,7 @@ class JointSolver {
     std::vector<std::uint32_t> joint_, a_, b_;  ///< by place: joint (or none) and slots of its bodies
     std::vector<std::uint8_t> some_fixed_;      ///< by block
     std::vector<Line> lines_;
+    Couplings<D> couplings_;
 };
 
 }  // namespace carom::detail
