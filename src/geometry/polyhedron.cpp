@@ -259,6 +259,16 @@ std::vector<LatticePoint> on_lattice(const std::vector<Vec3>& points, double ext
 
 }  // namespace
 
+void measure(Polyhedron& polyhedron) {
+    polyhedron.middle = {};
+    for (const Vec3& vertex : polyhedron.vertices) polyhedron.middle += vertex;
+    polyhedron.middle = polyhedron.middle / double(polyhedron.vertices.size());
+    double square = 0;
+    for (const Vec3& vertex : polyhedron.vertices)
+        square = std::max(square, length_squared(vertex - polyhedron.middle));
+    polyhedron.extent = std::sqrt(square);
+}
+
 bool connect(Polyhedron& polyhedron) {
     struct Side {
         std::uint32_t low, high, from, face;

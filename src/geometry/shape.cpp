@@ -60,6 +60,7 @@ Polyhedron box_core(const Transform3& placed, const Vec3& half) {
     box.indices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
     box.first = {0, 4, 8, 12, 16, 20, 24};
     connect(box);
+    measure(box);
     return box;
 }
 
@@ -119,6 +120,7 @@ void fill(Shape<D>& shape, const Hull<D>& hull, const Transform<D>& placed) {
         for (Vec2& normal : core.normals) normal = rotate(placed.rotation, normal);
     }
     for (Vec<D>& vertex : core.vertices) vertex = apply(placed, vertex);
+    if constexpr (D == 3) measure(core);
     shape.kind = ShapeKind::hull;
     shape.radius = hull.rounding;
     shape.core = std::make_shared<const Polytope<D>>(std::move(core));

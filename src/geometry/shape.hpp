@@ -37,6 +37,8 @@ struct Polyhedron {
     std::vector<std::uint32_t> indices;
     std::vector<std::uint32_t> first;  ///< one more than there are faces
     std::vector<Edge> edges;
+    Vec3 middle{};      ///< mean of the corners
+    double extent = 0;  ///< from the middle to the corner furthest from it
 };
 
 template <int D>

@@ -37,7 +37,7 @@ struct ContactCache {
     };
 
     RelativePose<D> pose{};
-    Vec<D, float> normal{};  ///< in a's axes
+    Vec<D, float> normal{};  ///< in a's axes; where there are no points, what may hold the shapes apart
     std::array<Point, Manifold<D>::capacity> points{};
     float roundness_a = 0, roundness_b = 0;
     int count = 0;

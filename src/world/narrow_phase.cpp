@@ -33,7 +33,8 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
     const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
     const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
-    Manifold<D> m = manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach);
+    Manifold<D> m =
+        manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach, narrow<double>(cache.normal));
     if (c.on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
     cache.pose = RelativePose<D>(a, b);
     cache.normal = narrow<float>(m.normal);
@@ -92,7 +93,7 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         if ((round && cache.count > 0) || !definition.continuous) cache.forget();
     }
     set_points(cache, sa, sb, reach, c);
-    if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) meet_ahead(c, dt);
+    if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) meet_ahead(c, cache, dt);
     if (c.special) {
         pass_one_way(c, old.count > 0 || old.passing);
         drag_along(c);
