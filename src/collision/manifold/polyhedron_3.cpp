@@ -11,20 +11,6 @@ namespace carom::detail {
 
 namespace {
 
-/// The corner that lies furthest along the direction; the first of several.
-std::size_t furthest(const Polyhedron& core, const Vec3& direction) {
-    std::size_t best = 0;
-    double highest = dot(core.vertices[0], direction);
-    for (std::size_t i = 1; i < core.vertices.size(); ++i) {
-        const double height = dot(core.vertices[i], direction);
-        if (height > highest) {
-            highest = height;
-            best = i;
-        }
-    }
-    return best;
-}
-
 constexpr std::size_t none = std::size_t(-1);
 constexpr Nearest3 nothing{{}, -1e300, {}, {}};
 
@@ -44,7 +30,7 @@ FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transf
     for (std::size_t f = 0; f < a.normals.size() && best.gap <= limit; ++f) {
         if (dot(a.normals[f], best.corner) - a.offsets[f] <= best.gap) continue;
         const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
-        const Vec3& lowest = b.vertices[furthest(b, -normal)];
+        const Vec3& lowest = b.vertices[furthest_corner(b, -normal)];
         const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
         const double gap = base + dot(normal, lowest);
         if (gap > best.gap) best = {gap, apply(b_in_a, lowest), f};
