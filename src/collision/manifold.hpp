@@ -18,7 +18,8 @@ namespace carom::detail {
 ///
 /// An `axis` that is not zero says along which direction, about a unit vector, the shapes were apart or
 /// touched when they were last collided. If it still holds them apart, that is known at once. An empty
-/// manifold may have a normal: the axis for next time.
+/// manifold may have a normal: the axis for next time; then the separation of its first point is the gap
+/// along it.
 template <int D>
 Manifold<D> collide_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach,
                            const Vec<D>& axis = {});
@@ -51,6 +52,15 @@ template <>
 const PairRoutines<2>& pair_routines<2>(ShapeKind a, ShapeKind b);
 template <>
 const PairRoutines<3>& pair_routines<3>(ShapeKind a, ShapeKind b);
+
+/// An empty manifold of shapes that are `gap` apart along the axis.
+template <int D>
+Manifold<D> apart_along(const Vec<D>& axis, double gap) {
+    Manifold<D> manifold;
+    manifold.normal = axis;
+    manifold.points[0].separation = gap;
+    return manifold;
+}
 
 /// The placement that undoes `t`.
 template <int D>

@@ -7,30 +7,26 @@ namespace carom::detail {
 
 namespace {
 
-Manifold<3> apart_along(const Vec3& axis) {
-    Manifold<3> manifold;
-    manifold.normal = axis;
-    return manifold;
-}
-
 template <NearestRoutine3 nearest>
 Manifold<3> collide(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a, double reach,
                     const Vec3& axis) {
     const Pair3 pair{a, b, b_in_a};
-    const double limit = reach + core_radius(a) + core_radius(b);
+    const double radii = core_radius(a) + core_radius(b), limit = reach + radii;
     Nearest3 found = nearest(pair, {limit, true, axis});
-    if (found.distance > limit) return apart_along(found.normal);
+    if (found.distance > limit) return apart_along(found.normal, found.distance - radii);
     if (const auto patch = contact_patch(pair, found, reach)) return *patch;
 
     found = made_certain(pair, nearest(pair, {limit, false, axis}));
-    return found.distance > limit ? apart_along(found.normal) : *contact_patch(pair, found, reach);
+    if (found.distance > limit) return apart_along(found.normal, found.distance - radii);
+    return *contact_patch(pair, found, reach);
 }
 
 /// The same where it takes longer to find the axis than to try one.
 template <NearestRoutine3 nearest>
 Manifold<3> collide_unless_apart(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a,
                                  double reach, const Vec3& axis) {
-    if (gap_along(a, b, b_in_a, axis) > reach) return apart_along(axis);
+    const double gap = gap_along(a, b, b_in_a, axis);
+    if (gap > reach) return apart_along(axis, gap);
     return collide<nearest>(a, b, b_in_a, reach, axis);
 }
 

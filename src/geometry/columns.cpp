@@ -1,6 +1,7 @@
 #include "geometry/columns.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace carom::detail {
 
@@ -39,6 +40,15 @@ std::size_t Columns::furthest(const Vec3& direction) const {
         best = index;
     }
     return best;
+}
+
+void Columns::products(const Vec3& v, double* result) const {
+    for (const Block& block : blocks_) {
+        Two now[2];
+        products(block, v, now);
+        std::memcpy(result, now, sizeof now);
+        result += 4;
+    }
 }
 
 std::array<double, 2> Columns::range(const Vec3& direction) const {

@@ -18,6 +18,9 @@ class Columns {
     bool empty() const { return blocks_.empty(); }
     /// The index of the vector that lies furthest along the direction; the first of several.
     std::size_t furthest(const Vec3& direction) const;
+    /// The products of all with the vector, into room for `padded_size()`.
+    void products(const Vec3& v, double* result) const;
+    std::size_t padded_size() const { return 4 * blocks_.size(); }
     /// The least and the greatest product with the direction.
     std::array<double, 2> range(const Vec3& direction) const;
 

@@ -120,6 +120,7 @@ Polytope<D> hull_core(const std::vector<Vec<D>>& points, const Transform<D>& pla
     if constexpr (D == 3) {
         measure(core);
         core.corners = Columns(core.vertices);
+        core.faces = Columns(core.normals);
     }
     return core;
 }

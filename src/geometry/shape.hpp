@@ -41,6 +41,7 @@ struct Polyhedron {
     Vec3 middle{};      ///< mean of the corners
     double extent = 0;  ///< from the middle to the corner furthest from it
     Columns corners;    ///< the vertices once more, where there are many
+    Columns faces;      ///< the normals once more, where there are many
 };
 
 template <int D>

@@ -188,6 +188,8 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, const ContactCache<D>& cache
     double elapsed = 0;
     BodyState<D> a = sa, b = sb;
     Vec<D> axis = narrow<double>(cache.normal);
+    const double least_gap = cache.least_gap(RelativePose<D>(sa, sb), mb.radius);
+    if (least_gap - 0.5 * near > dt * (turning - dot(rotate(sa.rotation, axis), speed))) return;
     for (int i = 0; i < most_advances; ++i) {
         a = coasted(sa, ma, definition.gravity, elapsed);
         b = coasted(sb, mb, definition.gravity, elapsed);

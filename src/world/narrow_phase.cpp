@@ -41,6 +41,7 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
     cache.roundness_a = static_cast<float>(roundness<D>(shape_a, m.normal));
     cache.roundness_b = static_cast<float>(roundness<D>(shape_b, unrotate(b_in_a.rotation, m.normal)));
     cache.count = m.count;
+    if (m.count == 0) cache.gap = static_cast<float>(m.points[0].separation);
     for (int i = 0; i < m.count; ++i) {
         const Vec<D> on_a = m.points[i].position - ma.center;
         const Vec<D> on_b = unrotate(cache.pose.rotation, on_a - cache.pose.position);
@@ -84,7 +85,8 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
                              turning_speed(sb, mb) + length(definition.gravity) * dt);
     const double reach = definition.continuous ? speculative_distance : speculative_distance + way;
     const ContactRecord<D> old = c;
-    if (!cache.holds(RelativePose<D>(sa, sb))) {
+    const RelativePose<D> pose(sa, sb);
+    if (cache.least_gap(pose, mb.radius) <= reach && !cache.holds(pose)) {
         // Points that are out of reach by less than the bodies may move before this is done again count too.
         cache.way = static_cast<float>(reuse_share * smaller_radius(ma, mb));
         touch(c, sa, sb, reach + cache.way, cache);

@@ -91,14 +91,12 @@ std::optional<Separation<2>> separate_outlines(const Shape<2>& a, const Shape<2>
 
 Manifold<2> collide_outlines(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach,
                              const Vec2& axis) {
-    Manifold<2> apart;
-    apart.normal = axis;
-    if (gap_along(a, b, b_in_a, axis) > reach) return apart;
+    const double last_gap = gap_along(a, b, b_in_a, axis);
+    if (last_gap > reach) return apart_along(axis, last_gap);
     const Outline first(a, {}), second(b, b_in_a);
     const Proximity near = proximity(first, second);
-    apart.normal = near.axis;
-    const bool is_apart = near.distance - first.radius() - second.radius() > reach;
-    return is_apart ? apart : touching(first, second, near, reach);
+    const double gap = near.distance - first.radius() - second.radius();
+    return gap > reach ? apart_along(near.axis, gap) : touching(first, second, near, reach);
 }
 
 Manifold<2> touching(const Outline& first, const Outline& second, const Proximity& near, double reach) {

@@ -22,13 +22,40 @@ struct FaceGap {
     std::size_t face = none;
 };
 
+/// Room for the common case; larger polyhedra spill to the heap.
+struct Memory {
+    alignas(std::max_align_t) std::array<std::byte, 16 * 1024> bytes;
+    std::pmr::monotonic_buffer_resource resource{bytes.data(), bytes.size()};
+};
+
+/// How far a point lies above each face of a polyhedron.
+class Heights {
+  public:
+    Heights(const Polyhedron& core, const Vec3& point, Memory& memory) : heights_(&memory.resource) {
+        const std::size_t count = core.normals.size();
+        heights_.resize(std::max(count, core.faces.padded_size()));
+        if (core.faces.empty()) {
+            for (std::size_t f = 0; f < count; ++f) heights_[f] = dot(core.normals[f], point);
+        } else {
+            core.faces.products(point, heights_.data());
+        }
+        for (std::size_t f = 0; f < count; ++f) heights_[f] -= core.offsets[f];
+    }
+    double operator[](std::size_t face) const { return heights_[face]; }
+
+  private:
+    std::pmr::vector<double> heights_;
+};
+
 /// Looks for a wider gap than `best` has along the normals of a's faces, b's corners being placed in a's
-/// frame by `b_in_a`. No gap is more than the height of any of b's points over the face, which spares most
-/// faces the look at all of b's corners, since the best one's is where b is nearest to a or deepest in it.
-FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a, FaceGap best,
-                          double limit) {
+/// frame by `b_in_a`. No gap is more than the height of any of b's points over the face (`heights` are those
+/// of the first `best.corner`), which spares most faces the look at all of b's corners, since the best one's
+/// is where b is nearest to a or deepest in it.
+FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a,
+                          const Heights& heights, FaceGap best, double limit) {
     for (std::size_t f = 0; f < a.normals.size() && best.gap <= limit; ++f) {
-        if (dot(a.normals[f], best.corner) - a.offsets[f] <= best.gap) continue;
+        if (heights[f] <= best.gap) continue;
+        if (best.face != none && dot(a.normals[f], best.corner) - a.offsets[f] <= best.gap) continue;
         const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
         const Vec3& lowest = b.vertices[furthest_corner(b, -normal)];
         const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
@@ -49,22 +76,17 @@ struct Arc {
 };
 using Arcs = std::pmr::vector<Arc>;
 
-/// Points of one polyhedron, where it is nearest to another one or deepest in it.
-using Witnesses = std::array<Vec3, 2>;
-
-/// The edges, placed by `t`, that can part the polyhedron from another one by more than `gap`, if that has
-/// points at `others` (in the polyhedron's frame). An edge's normals lie between those of its two faces;
-/// where a point is below both faces by more than −gap, so it is along any of them.
-void find_arcs(const Polyhedron& core, const Transform3& t, const Witnesses& others, double gap, Arcs& arcs) {
+/// The edges, placed by `t`, that can part the polyhedron from another one by more than `gap`, which has two
+/// points at these heights over the faces. An edge's normals lie between those of its two faces; where a
+/// point is below both faces by more than −gap, so it is along any of them.
+void find_arcs(const Polyhedron& core, const Transform3& t, const Heights& of_first, const Heights& of_second,
+               double gap, Arcs& arcs) {
     const double needed = std::min(gap, 0.0) - 1e-4 * core.extent;  // corners may stand out of their faces
-    const auto allows = [&](std::uint32_t left, std::uint32_t right) {
-        return std::all_of(others.begin(), others.end(), [&](const Vec3& p) {
-            return dot(core.normals[left], p) - core.offsets[left] >= needed ||
-                   dot(core.normals[right], p) - core.offsets[right] >= needed;
-        });
+    const auto are_below = [&](const Heights& heights, const Polyhedron::Edge& edge) {
+        return std::max(heights[edge.left], heights[edge.right]) < needed;
     };
     for (const Polyhedron::Edge& edge : core.edges) {
-        if (!allows(edge.left, edge.right)) continue;
+        if (are_below(of_first, edge) || are_below(of_second, edge)) continue;
         const Vec3& from = core.vertices[edge.from];
         arcs.push_back({apply(t, from), rotate(t.rotation, core.vertices[edge.to] - from),
                         rotate(t.rotation, core.normals[edge.left]),
@@ -83,16 +105,8 @@ bool cross_on_gauss_map(const Arc& a, const Arc& b) {
     return dot(a.left, b.along) * right_of_a < 0 && left_of_b * right_of_a < 0;
 }
 
-/// The widest gap across an edge of a and one of b, if it is more than `gap`. In a's frame; the witnesses are
-/// points of a in b's frame and the other way round.
-Nearest3 widest_over_edges(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a, double gap,
-                           const Witnesses& of_a, const Witnesses& of_b) {
-    std::array<std::byte, 16 * 1024> room;
-    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
-    Arcs arcs_a(&memory), arcs_b(&memory);
-    find_arcs(a, {}, of_b, gap, arcs_a);
-    find_arcs(b, b_in_a, of_a, gap, arcs_b);
-
+/// The widest gap across an edge of a and one of b. In a's frame.
+Nearest3 widest_over_edges(const Arcs& arcs_a, const Arcs& arcs_b) {
     Nearest3 widest = nothing;
     for (const Arc& arc_a : arcs_a) {
         for (const Arc& arc_b : arcs_b) {
@@ -145,19 +159,25 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     if (start.distance > search.limit) return start;
     const double least = least_of_interest(pair, start.distance);
 
+    Memory memory;
     Nearest3 nearest = nothing;
-    const FaceGap over_a = widest_over_faces(a, b, b_in_a, {least, start.on_b}, search.limit);
-    if (over_a.face != none) nearest = at_face(a, over_a);
-    if (over_a.gap > search.limit) return nearest;
+    const Heights over_a(a, start.on_b, memory);
+    const FaceGap of_a = widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit);
+    if (of_a.face != none) nearest = at_face(a, of_a);
+    if (of_a.gap > search.limit) return nearest;
     const Vec3 near_a = apply(a_in_b, start.on_a);
-    const FaceGap over_b = widest_over_faces(b, a, a_in_b, {over_a.gap, near_a}, search.limit);
-    if (over_b.face != none) {
-        const Nearest3 found = exchanged(at_face(b, over_b), b_in_a);
+    const Heights over_b(b, near_a, memory);
+    const FaceGap of_b = widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit);
+    if (of_b.face != none) {
+        const Nearest3 found = exchanged(at_face(b, of_b), b_in_a);
         if (preferred(found, nearest)) nearest = found;
     }
-    if (over_b.gap > search.limit) return nearest;
-    const Nearest3 of_edges =
-        widest_over_edges(a, b, b_in_a, over_b.gap, {near_a, over_b.corner}, {start.on_b, over_a.corner});
+    if (of_b.gap > search.limit) return nearest;
+
+    Arcs arcs_a(&memory.resource), arcs_b(&memory.resource);
+    find_arcs(a, {}, over_a, Heights(a, of_a.corner, memory), of_b.gap, arcs_a);
+    find_arcs(b, b_in_a, over_b, Heights(b, of_b.corner, memory), of_b.gap, arcs_b);
+    const Nearest3 of_edges = widest_over_edges(arcs_a, arcs_b);
     return preferred(of_edges, nearest) ? of_edges : nearest;
 }
 
