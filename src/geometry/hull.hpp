@@ -60,7 +60,7 @@ struct HullTriangle {
 /// convex, coplanar triangles included. Empty when the points lie in a plane, within the tolerance.
 std::vector<HullTriangle> quickhull(const std::vector<LatticePoint>& points, double tolerance);
 
-/// Sets the middle and the extent of a polyhedron that has its corners.
+/// Measures a polyhedron that has its corners and faces: middle, extent and unevenness.
 void measure(Polyhedron& polyhedron);
 
 /// Finds the edges of a polyhedron that has its corners and faces. False when the faces do not close a

@@ -267,6 +267,13 @@ void measure(Polyhedron& polyhedron) {
     for (const Vec3& vertex : polyhedron.vertices)
         square = std::max(square, length_squared(vertex - polyhedron.middle));
     polyhedron.extent = std::sqrt(square);
+    polyhedron.unevenness = 0;
+    for (std::size_t f = 0; f < polyhedron.normals.size(); ++f) {
+        for (const Vec3& vertex : polyhedron.vertices) {
+            const double height = dot(polyhedron.normals[f], vertex) - polyhedron.offsets[f];
+            polyhedron.unevenness = std::max(polyhedron.unevenness, height);
+        }
+    }
 }
 
 bool connect(Polyhedron& polyhedron) {

@@ -38,10 +38,11 @@ struct Polyhedron {
     std::vector<std::uint32_t> indices;
     std::vector<std::uint32_t> first;  ///< one more than there are faces
     std::vector<Edge> edges;
-    Vec3 middle{};      ///< mean of the corners
-    double extent = 0;  ///< from the middle to the corner furthest from it
-    Columns corners;    ///< the vertices once more, where there are many
-    Columns faces;      ///< the normals once more, where there are many
+    Vec3 middle{};          ///< mean of the corners
+    double extent = 0;      ///< from the middle to the corner furthest from it
+    double unevenness = 0;  ///< by how much corners stand out of faces
+    Columns corners;        ///< the vertices once more, where there are many
+    Columns faces;          ///< the normals once more, where there are many
 };
 
 template <int D>

@@ -5,6 +5,7 @@
 #include <memory_resource>
 #include <vector>
 
+#include "collision/manifold/heights_3.hpp"
 #include "collision/manifold/nearest_3.hpp"
 
 namespace carom::detail {
@@ -22,37 +23,12 @@ struct FaceGap {
     std::size_t face = none;
 };
 
-/// Room for the common case; larger polyhedra spill to the heap.
-struct Memory {
-    alignas(std::max_align_t) std::array<std::byte, 16 * 1024> bytes;
-    std::pmr::monotonic_buffer_resource resource{bytes.data(), bytes.size()};
-};
-
-/// How far a point lies above each face of a polyhedron.
-class Heights {
-  public:
-    Heights(const Polyhedron& core, const Vec3& point, Memory& memory) : heights_(&memory.resource) {
-        const std::size_t count = core.normals.size();
-        heights_.resize(std::max(count, core.faces.padded_size()));
-        if (core.faces.empty()) {
-            for (std::size_t f = 0; f < count; ++f) heights_[f] = dot(core.normals[f], point);
-        } else {
-            core.faces.products(point, heights_.data());
-        }
-        for (std::size_t f = 0; f < count; ++f) heights_[f] -= core.offsets[f];
-    }
-    double operator[](std::size_t face) const { return heights_[face]; }
-
-  private:
-    std::pmr::vector<double> heights_;
-};
-
 /// Looks for a wider gap than `best` has along the normals of a's faces, b's corners being placed in a's
 /// frame by `b_in_a`. No gap is more than the height of any of b's points over the face (`heights` are those
 /// of the first `best.corner`), which spares most faces the look at all of b's corners, since the best one's
 /// is where b is nearest to a or deepest in it.
 FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a,
-                          const Heights& heights, FaceGap best, double limit) {
+                          const Heights3& heights, FaceGap best, double limit) {
     for (std::size_t f = 0; f < a.normals.size() && best.gap <= limit; ++f) {
         if (heights[f] <= best.gap) continue;
         if (best.face != none && dot(a.normals[f], best.corner) - a.offsets[f] <= best.gap) continue;
@@ -76,17 +52,13 @@ struct Arc {
 };
 using Arcs = std::pmr::vector<Arc>;
 
-/// The edges, placed by `t`, that can part the polyhedron from another one by more than `gap`, which has two
-/// points at these heights over the faces. An edge's normals lie between those of its two faces; where a
-/// point is below both faces by more than −gap, so it is along any of them.
-void find_arcs(const Polyhedron& core, const Transform3& t, const Heights& of_first, const Heights& of_second,
+/// The edges, placed by `t`, that can part the polyhedron by more than `gap` from another one, which has two points
+/// at these heights over the faces.
+void find_arcs(const Polyhedron& core, const Transform3& t, const Heights3& of_first, const Heights3& of_second,
                double gap, Arcs& arcs) {
-    const double needed = std::min(gap, 0.0) - 1e-4 * core.extent;  // corners may stand out of their faces
-    const auto are_below = [&](const Heights& heights, const Polyhedron::Edge& edge) {
-        return std::max(heights[edge.left], heights[edge.right]) < needed;
-    };
+    const double needed = std::min(gap, 0.0) - core.unevenness;
     for (const Polyhedron::Edge& edge : core.edges) {
-        if (are_below(of_first, edge) || are_below(of_second, edge)) continue;
+        if (of_first.hides(edge, needed) || of_second.hides(edge, needed)) continue;
         const Vec3& from = core.vertices[edge.from];
         arcs.push_back({apply(t, from), rotate(t.rotation, core.vertices[edge.to] - from),
                         rotate(t.rotation, core.normals[edge.left]),
@@ -134,12 +106,13 @@ Vec3 start_axis(const Pair3& pair, const Vec3& axis) {
 }
 
 /// Where the widest gap of all is at least `known`, the least that one may have and be preferred to it (see
-/// `advantage`), with room for corners that stand out of their faces. Shapes that are apart are all treated
-/// as if they touched, since no face or edge may show more of the gap between two corners.
+/// `advantage`), with room for corners that stand out of their faces and for rounding. Shapes that are apart are
+/// all treated as if they touched, since no face or edge may show more of the gap between two corners.
 double least_of_interest(const Pair3& pair, double known) {
+    const Polyhedron &a = *pair.a.core, &b = *pair.b.core;
     const double radii = core_radius(pair.a) + core_radius(pair.b);
-    const double extent = std::max(pair.a.core->extent, pair.b.core->extent);
-    return radii + (std::min(known, 0.0) - radii) / 0.95 - 1e-4 * extent;
+    const double room = a.unevenness + b.unevenness + 1e-6 * std::max(a.extent, b.extent);
+    return radii + (std::min(known, 0.0) - radii) / 0.95 - 2 * room;
 }
 
 }  // namespace
@@ -159,14 +132,14 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     if (start.distance > search.limit) return start;
     const double least = least_of_interest(pair, start.distance);
 
-    Memory memory;
+    Memory3 memory;
     Nearest3 nearest = nothing;
-    const Heights over_a(a, start.on_b, memory);
+    const Heights3 over_a(a, start.on_b, memory);
     const FaceGap of_a = widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit);
     if (of_a.face != none) nearest = at_face(a, of_a);
     if (of_a.gap > search.limit) return nearest;
     const Vec3 near_a = apply(a_in_b, start.on_a);
-    const Heights over_b(b, near_a, memory);
+    const Heights3 over_b(b, near_a, memory);
     const FaceGap of_b = widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit);
     if (of_b.face != none) {
         const Nearest3 found = exchanged(at_face(b, of_b), b_in_a);
@@ -174,9 +147,12 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     }
     if (of_b.gap > search.limit) return nearest;
 
+    const double needed =
+        std::max(of_b.gap, nearest.distance + advantage(pair, search, nearest.distance, extent));
     Arcs arcs_a(&memory.resource), arcs_b(&memory.resource);
-    find_arcs(a, {}, over_a, Heights(a, of_a.corner, memory), of_b.gap, arcs_a);
-    find_arcs(b, b_in_a, over_b, Heights(b, of_b.corner, memory), of_b.gap, arcs_b);
+    find_arcs(a, {}, over_a, Heights3(a, of_a.corner, memory), needed, arcs_a);
+    if (arcs_a.empty()) return nearest;
+    find_arcs(b, b_in_a, over_b, Heights3(b, of_b.corner, memory), needed, arcs_b);
     const Nearest3 of_edges = widest_over_edges(arcs_a, arcs_b);
     return preferred(of_edges, nearest) ? of_edges : nearest;
 }

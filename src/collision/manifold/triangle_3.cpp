@@ -26,7 +26,6 @@ class Triangle {
         for (const Vec3& p : facet.points) core->vertices.push_back(apply_inverse(placed, p));
         const std::vector<Vec3>& v = core->vertices;
         normal = unrotate(placed.rotation, facet.normal());
-        measure(*core);
         core->normals.assign({normal});
         core->offsets.assign({dot(normal, v[0])});
         core->indices.assign({0, 1, 2});
@@ -37,6 +36,7 @@ class Triangle {
             core->indices.insert(core->indices.end(), {0, 2, 1});
             core->first.push_back(6);
         }
+        measure(*core);
         shape.kind = ShapeKind::facet;
         shape.a = (v[0] + v[1] + v[2]) / 3;
         shape.core = core;
