@@ -93,6 +93,7 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     BodyInfo<D>& info = w.infos[i];
     info.can_sleep = definition.can_sleep;
     info.bullet = definition.bullet;
+    w.bullets += definition.bullet;
     info.definition = definition;
     info.definition.shapes.clear();
     BodyMass<D>& m = w.masses[i];
@@ -128,6 +129,7 @@ void World<D>::remove_body(BodyId<D> body) {
         w.shape_slots.release(shape.index);
     }
     w.forces.remove_all_of(body);
+    w.bullets -= w.infos[i].bullet;
     w.infos[i] = {};
     w.masses[i] = {};
     std::erase(w.to_wake, i);

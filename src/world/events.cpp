@@ -7,13 +7,7 @@
 
 namespace carom::detail {
 
-namespace {
-
-/// Shapes that touched go on touching until the gap is larger than this, so that what trembles at rest does
-/// not report an end and a beginning every other step.
-constexpr float parting_distance = 0.002f;  // m
-
-}  // namespace
+namespace {}  // namespace
 
 template <int D>
 ShapePair<D> WorldState<D>::names(std::uint32_t shape_a, std::uint32_t shape_b) const {
@@ -22,23 +16,28 @@ ShapePair<D> WorldState<D>::names(std::uint32_t shape_a, std::uint32_t shape_b) 
             shape_slots.template id<ShapeId<D>>(shape_a), shape_slots.template id<ShapeId<D>>(shape_b)};
 }
 
-/// A contact begins when it carries an impulse or overlaps, and ends when it has done neither and its gap is
-/// wide. Contacts of bodies that stand still stay as they are.
+/// The contacts that began or ended to touch, in their order. Contacts of bodies that stand still stay as
+/// they are.
 template <int D>
 void WorldState<D>::report_contacts() {
     events.clear();
     std::swap(events.contact_ends, dropped_contacts);
-    for (ContactRecord<D>& c : contacts) {
-        if (!any_moves(c.body_a, c.body_b)) continue;
-        bool held = false, near = false;
-        for (int i = 0; i < c.count; ++i) {
-            held |= c.points[i].total_impulse > 0 || c.points[i].separation <= 0;
-            near |= c.points[i].separation <= parting_distance;
-        }
-        if (c.merged) held = near = c.nearest <= parting_distance;
-        const bool was_touching = c.touching;
-        c.touching = held || (was_touching && near);
-        if (c.touching == was_touching || c.facet != no_part) continue;
+    touch_changes.clear();
+    solver.report([&](std::uint32_t i) {
+        solver.read(caches[i], contacts[i]);
+        touch_changes.push_back(i);
+    });
+    for (const std::uint32_t i : loose) {
+        if (i == ContactRecord<D>::nowhere || contacts[i].place) continue;
+        ContactRecord<D>& c = contacts[i];
+        const bool touches = c.merged && c.nearest <= parting_distance;
+        if (touches != c.touching) touch_changes.push_back(i);
+        c.touching = touches;
+    }
+    std::ranges::sort(touch_changes);
+    for (const std::uint32_t i : touch_changes) {
+        const ContactRecord<D>& c = contacts[i];
+        if (c.facet != no_part) continue;
         if (c.touching)
             report_begin(c);
         else
@@ -73,7 +72,7 @@ void WorldState<D>::report_terrain() {
         return !std::ranges::binary_search(list, touch, by_shapes);
     };
     for (const TerrainTouch<D>& touch : terrain_touched) {
-        if (missing_in(terrain_before, touch)) report_begin(contacts[touch.contact]);
+        if (missing_in(terrain_before, touch)) report_begin(current(touch.contact));
     }
     for (const TerrainTouch<D>& touch : terrain_before) {
         if (missing_in(terrain_touched, touch)) events.contact_ends.push_back({touch.pair});

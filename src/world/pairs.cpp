@@ -137,6 +137,7 @@ void WorldState<D>::find_pairs() {
 
     std::sort(new_pairs.begin(), new_pairs.end());
     new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
+    regrouped.clear();
     for (const PairKey& key : new_pairs) {
         pairs.insert(key);
         if (shapes[key.a].definition.sensor) {
@@ -144,10 +145,10 @@ void WorldState<D>::find_pairs() {
         } else if (shapes[key.b].definition.sensor) {
             sensor_pairs.push_back({key.b, key.a});
         } else {
-            contacts.push_back(new_contact(key));
-            caches.emplace_back();
+            add_contact(key);
         }
     }
+    part_from_others();
 }
 
 /// Does a shape meet the facets of a terrain here? Sensors care for the whole.
@@ -167,19 +168,6 @@ void WorldState<D>::find_facets(std::uint32_t shape_a, std::uint32_t shape_b) {
         const PairKey key = PairKey::of(shape_a, shape_b, facet);
         if (!pairs.contains(key)) new_pairs.push_back(key);
     });
-}
-
-template <int D>
-ContactRecord<D> WorldState<D>::new_contact(const PairKey& key) const {
-    ContactRecord<D> c;
-    c.shape_a = key.a;
-    c.shape_b = key.b;
-    c.facet = key.part;
-    c.body_a = shapes[key.a].body;
-    c.body_b = shapes[key.b].body;
-    c.on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
-    set_surface(c);
-    return c;
 }
 
 /// What the materials of the two shapes make of their contact.
@@ -232,30 +220,6 @@ bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
 }
 
 template <int D>
-void WorldState<D>::remove_contact(std::size_t contact) {
-    const ContactRecord<D>& c = contacts[contact];
-    pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
-    if (c.touching && c.facet == no_part) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
-    contacts[contact] = contacts.back();
-    contacts.pop_back();
-    caches[contact] = caches.back();
-    caches.pop_back();
-}
-
-/// The shapes of the body, or its centre of mass, changed.
-template <int D>
-void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        if (contacts[i].body_a == body || contacts[i].body_b == body) caches[i].forget();
-    }
-}
-
-template <int D>
-void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
-    remove_contacts_if([&](const ContactRecord<D>& c) { return c.shape_a == shape || c.shape_b == shape; });
-}
-
-template <int D>
 void WorldState<D>::place_visits_anew(std::uint32_t shape) {
     for (SensorPair& pair : sensor_pairs) pair.placed_anew |= pair.sensor == shape || pair.visitor == shape;
 }
@@ -277,11 +241,6 @@ void WorldState<D>::remove_visits_of(std::uint32_t shape) {
     }
 }
 
-template <int D>
-void WorldState<D>::remove_contacts_of(std::uint32_t body) {
-    remove_contacts_if([&](const ContactRecord<D>& c) { return c.body_a == body || c.body_b == body; });
-}
-
 #define CAROM_INSTANTIATE(D)                                                             \
     template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const;         \
     template void WorldState<D>::mark_moved(std::uint32_t);                              \
@@ -291,13 +250,9 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
     template bool WorldState<D>::is_terrain_contact(std::uint32_t, std::uint32_t) const; \
     template void WorldState<D>::find_pairs();                                           \
     template void WorldState<D>::drop_pairs();                                           \
-    template void WorldState<D>::remove_contact(std::size_t);                            \
     template void WorldState<D>::remove_visits_of(std::uint32_t);                        \
-    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                     \
-    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                \
     template void WorldState<D>::place_visits_anew(std::uint32_t);                       \
-    template void WorldState<D>::set_surface(ContactRecord<D>&) const;                   \
-    template void WorldState<D>::remove_contacts_of(std::uint32_t);
+    template void WorldState<D>::set_surface(ContactRecord<D>&) const;
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE

@@ -59,7 +59,8 @@ void WorldState<D>::wake_islands() {
 template <int D>
 void WorldState<D>::wake_touched(double dt) {
     if (awake.size() == movable.size()) return;  // nobody sleeps
-    for (const ContactRecord<D>& c : contacts) {
+    for (const std::uint32_t contact : loose) {
+        const ContactRecord<D>& c = contacts[contact];
         if (c.count == 0 || (moving[c.body_a] == stands_still) == (moving[c.body_b] == stands_still))
             continue;
         const bool sleeper_a = types[c.body_a] == BodyType::dynamic && !is_awake(c.body_a);
@@ -78,6 +79,7 @@ void WorldState<D>::wake_touched(double dt) {
     for (const std::uint32_t i : movable) {
         if (types[i] == BodyType::dynamic && is_awake(i) && moving[i] == stands_still) list_awake(i);
     }
+    follow_bodies();
 }
 
 namespace {

@@ -9,12 +9,12 @@
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
+#include "dynamics/contact_cache.hpp"
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/islands.hpp"
 #include "geometry/shape.hpp"
 #include "solver/solver.hpp"
-#include "world/contact_cache.hpp"
 
 namespace carom::detail {
 
@@ -105,7 +105,9 @@ struct WorldState {
 
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
-    std::vector<ContactCache<D>> caches;  ///< by contact: where its points were found
+    std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
+    std::vector<std::uint32_t> loose;              ///< contacts that are looked at one by one, or `nowhere`
+    std::vector<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
     std::vector<SensorPair> sensor_pairs;
 
     // Results of the last step.
@@ -119,17 +121,21 @@ struct WorldState {
         terrain_before;  ///< now and a step ago, in the order of shapes
 
     // Working space of a step.
-    std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
-    std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
-    std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
-    std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> awake;  ///< indices of the awake dynamic bodies and the moving kinematic ones
+    std::vector<std::uint8_t> moving;  ///< by body index: how it moves in this step
+    std::uint32_t bullets = 0;         ///< how many bodies are bullets
+    std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
+    std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
+    std::vector<std::uint32_t> touch_changes;  ///< contacts that began or ended to touch
+    std::vector<std::uint32_t> fast;           ///< bodies that came so far in this step that they may pass
+                                               ///< through something
+    std::vector<std::uint32_t> flying;         ///< indices of the dynamic bodies that nothing touches
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
-    std::vector<std::uint8_t> touched;
     std::vector<BodyState<D>> before;  ///< states of `awake` at the start of the step
     std::vector<std::uint32_t> place;  ///< in `awake` and `before`, by body index, of those that are there
-    std::vector<FixedContact> fixed_contacts;      ///< by body, shape and fixed shape
+    std::vector<FixedContact> fixed_contacts;      ///< of some bodies, by body, shape and fixed shape
     std::vector<ContactRecord<D>> patches_before;  ///< of shapes that have several, in the last step
     std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
     std::vector<ManifoldPoint<D>> patch_points;
@@ -159,10 +165,29 @@ struct WorldState {
     bool is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
     void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
     bool are_near(const ContactRecord<D>& contact) const;
-    ContactRecord<D> new_contact(const PairKey& key) const;
     void set_surface(ContactRecord<D>& contact) const;
-    void forget_manifolds_of(std::uint32_t body);
     const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
+
+    // contacts.cpp: what is done about each contact, and where it is kept.
+    void add_contact(const PairKey& key);
+    void part_from_others();
+    void remove_contact(std::size_t contact);
+    template <class Condition>
+    void remove_contacts_if(const Condition& condition) {
+        for (std::size_t i = 0; i < contacts.size();) condition(contacts[i]) ? remove_contact(i) : void(++i);
+    }
+    void remove_contacts_of(std::uint32_t body);
+    void remove_contacts_of_shape(std::uint32_t shape);
+    void forget_manifolds_of(std::uint32_t body);
+    void loosen(std::uint32_t contact);
+    void stop_carrying(std::uint32_t contact);
+    void leave_solver(std::uint32_t contact);
+    void take_loose();
+    void follow_bodies();
+    bool can_be_carried(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    void place_contacts();
+    ContactRecord<D> current(std::uint32_t contact) const;
+    std::uint32_t mover(const ContactRecord<D>& contact) const;
 
     // narrow_phase.cpp: who touches whom, and where.
     void collide(double dt);
@@ -174,11 +199,14 @@ struct WorldState {
 
     // continuous.cpp: what is fast.
     void meet_ahead(ContactRecord<D>& contact, const ContactCache<D>& cache, double dt) const;
+    void list_fast_contacts();
     void stop_at_obstacles();
     void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);
 
     // patches.cpp: flush fixed shapes are one surface.
-    void list_fixed_contacts();
+    void list_patches();
+    void list_fixed_contact(std::uint32_t contact);
+    void sort_fixed_contacts();
     template <class Visit>
     void each_fixed_group(const Visit& visit) const;
     void merge_patches();
@@ -241,13 +269,6 @@ struct WorldState {
     std::uint32_t index(BodyId<D> body) const;
     std::uint32_t index(ShapeId<D> shape) const;
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
-    template <class Condition>
-    void remove_contacts_if(const Condition& condition) {
-        for (std::size_t i = 0; i < contacts.size();) condition(contacts[i]) ? remove_contact(i) : void(++i);
-    }
-    void remove_contacts_of(std::uint32_t body);
-    void remove_contact(std::size_t contact);
-    void remove_contacts_of_shape(std::uint32_t shape);
     void remove_visits_of(std::uint32_t shape);
     void place_visits_anew(std::uint32_t shape);
     void remove_visit(std::size_t sensor_pair);
