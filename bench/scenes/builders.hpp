@@ -11,6 +11,7 @@ template <int D>
 BenchWorld<D> many_pyramids();
 BenchWorld<2> smash();
 BenchWorld<3> convex_pile();
+BenchWorld<3> convex_vs_mesh();
 BenchWorld<3> large_world();
 BenchWorld<3> wide_pyramid();
 BenchWorld<3> pyramid();

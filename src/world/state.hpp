@@ -202,7 +202,7 @@ struct WorldState {
                     ContactRecord<D>& contact) const;
 
     // continuous.cpp: what is fast.
-    void meet_ahead(ContactRecord<D>& contact, double dt) const;
+    void meet_ahead(ContactRecord<D>& contact, const ContactCache<D>& cache, double dt) const;
     void list_fast_contacts();
     void stop_at_obstacles();
     void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);
