@@ -18,6 +18,7 @@ std::span<const BenchScene> bench_scenes() {
         {"joint_grid_3", 100, joint_grid<3>},
         {"convex_pile_3", 500, convex_pile},
         {"rain_3", 400, rain_3},
+        {"convex_vs_mesh_3", 500, convex_vs_mesh, true},
         {"large_world_3", 500, large_world},
         {"wide_pyramid_3", 500, wide_pyramid},
         {"pyramid_3", 500, pyramid, true},

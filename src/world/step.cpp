@@ -117,8 +117,8 @@ void WorldState<D>::sum_forces() {
 template <int D>
 void WorldState<D>::solve_constraints(double dt) {
     list_active_joints();
-    solver.run({states, masses, loads, dt, definition.substeps, definition.restitution_threshold, joints,
-                active_joints, couplings, active_couplings});
+    solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
+                definition.restitution_threshold, joints, active_joints, couplings, active_couplings});
 }
 
 template <int D>
