@@ -61,7 +61,7 @@ void WorldState<D>::step(double dt) {
     keep_in_boxes(dt);          // queries find the bodies where they are now
     report_contacts();          // what began, ended and hit
     sense();                    // who is inside the sensors
-    break_joints();             // those that were pulled too hard
+    break_joints(dt);           // those that were pulled too hard
     fall_asleep(dt);            // islands at rest
 
     time += dt;
