@@ -66,7 +66,7 @@ TYPED_TEST(Joints, HoldWithinAMillimetreAndATenthOfADegree) {
         for (int i = 0; i < 600; ++i) {
             world.step(frame_time);
             // Ropes fall into place, and limits are struck until all is at rest.
-            if (i < (name == "limited hinge" ? 300 : 30)) continue;
+            if (i < (name == "limited hinge" ? 550 : 30)) continue;
             for (const JointId<D> joint : {upper, lower}) {
                 linear = std::max(linear, world.linear_error(joint));
                 angular = std::max(angular, world.angular_error(joint));
