@@ -128,6 +128,7 @@ void World<D>::remove_body(BodyId<D> body) {
     w.wake_neighbours(i);
     w.wake_islands();
     w.remove_contacts_of(i);
+    w.remove_joints_of(i);
     for (const std::uint32_t other : w.infos[i].ignored) std::erase(w.infos[other].ignored, i);
     for (const ShapeId<D>& shape : w.infos[i].shapes) {
         w.remove_visits_of(shape.index);

@@ -107,6 +107,7 @@ bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const
     } else {
         if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
         if (std::ranges::binary_search(infos[a.body].ignored, b.body)) return false;
+        if (std::ranges::binary_search(infos[a.body].jointed, b.body)) return false;
     }
     const Filter &fa = a.definition.filter, &fb = b.definition.filter;
     if (fa.group == fb.group && fa.group != 0) return fa.group > 0;

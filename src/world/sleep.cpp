@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/bonds.hpp"
 #include "world/state.hpp"
 
 namespace carom::detail {
@@ -24,10 +25,14 @@ void WorldState<D>::wake_neighbours(std::uint32_t body) {
         if (c.body_a == body) wake(c.body_b);
         if (c.body_b == body) wake(c.body_a);
     }
+    each_bond([&](std::uint32_t a, std::uint32_t b) {
+        if (a == body) wake(b);
+        if (b == body) wake(a);
+    });
     wake(body);
 }
 
-/// Joins the dynamic bodies that touch, or that a spring ties together.
+/// Joins the dynamic bodies that touch, or that a joint or a spring ties together.
 template <int D>
 void WorldState<D>::join_islands() {
     islands.reset(states.size());
@@ -38,6 +43,7 @@ void WorldState<D>::join_islands() {
         if (c.count > 0) join(c.body_a, c.body_b);
     }
     forces.each_spring(join);
+    each_bond(join);
 }
 
 /// Wakes all that hangs together with a body of `to_wake`.
@@ -74,6 +80,7 @@ void WorldState<D>::wake_touched(double dt) {
             break;
         }
     }
+    wake_jointed();
     if (to_wake.empty()) return;
     wake_islands();
     for (const std::uint32_t i : movable) {
@@ -136,6 +143,10 @@ void WorldState<D>::fall_asleep(double dt) {
         if (types[c.body_b] == BodyType::kinematic && is_moving(c.body_b))
             restless[islands.root(c.body_a)] = 1;
     }
+    each_bond([&](std::uint32_t a, std::uint32_t b) {
+        if (types[a] == BodyType::kinematic && is_moving(a)) restless[islands.root(b)] = 1;
+        if (types[b] == BodyType::kinematic && is_moving(b)) restless[islands.root(a)] = 1;
+    });
     for (const std::uint32_t i : awake) {
         if (types[i] != BodyType::dynamic || infos[i].disabled || restless[islands.root(i)]) continue;
         infos[i].awake = false;

@@ -14,7 +14,9 @@
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/islands.hpp"
+#include "dynamics/joint.hpp"
 #include "geometry/shape.hpp"
+#include "solver/joint_load.hpp"
 #include "solver/solver.hpp"
 
 namespace carom::detail {
@@ -66,6 +68,7 @@ struct EventBuffers {
     std::vector<ContactHit<D>> contact_hits;
     std::vector<SensorBegin<D>> sensor_begins;
     std::vector<SensorEnd<D>> sensor_ends;
+    std::vector<JointBreak<D>> joint_breaks;
 
     void clear() {
         contact_begins.clear();
@@ -73,6 +76,7 @@ struct EventBuffers {
         contact_hits.clear();
         sensor_begins.clear();
         sensor_ends.clear();
+        joint_breaks.clear();
     }
 };
 
@@ -105,6 +109,13 @@ struct WorldState {
 
     Forces<D> forces;
 
+    // Joints, by index.
+    Slots joint_slots;
+    std::vector<JointRecord<D>> joints;
+    std::vector<JointDefinition<D>> joint_definitions;
+    std::vector<JointId<D>> joint_ids;         ///< all that are in use, oldest first
+    std::vector<CouplingRecord<D>> couplings;  ///< of the joints that couple others, oldest first
+
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
     std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
@@ -128,12 +139,14 @@ struct WorldState {
     std::size_t facet_contacts = 0;    ///< how many contacts are with a facet of a terrain
     bool some_locked = false;          ///< has any body ever had a locked axis?
     std::uint32_t bullets = 0;         ///< how many bodies are bullets
-    std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
-    std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
-    std::vector<std::uint32_t> touch_changes;  ///< contacts that began or ended to touch
-    std::vector<std::uint32_t> fast;           ///< bodies that came so far in this step that they may pass
-                                               ///< through something
-    std::vector<std::uint32_t> flying;         ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> regrouped;         ///< bodies that got their second contact with a fixed shape
+    std::vector<std::uint32_t> to_place;          ///< contacts that the solver is to take up
+    std::vector<std::uint32_t> touch_changes;     ///< contacts that began or ended to touch
+    std::vector<std::uint32_t> fast;              ///< bodies that came so far in this step that they may pass
+                                                  ///< through something
+    std::vector<std::uint32_t> flying;            ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> active_joints;     ///< indices of the joints that the solver sees
+    std::vector<std::uint32_t> active_couplings;  ///< the same in `couplings`
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
@@ -152,7 +165,7 @@ struct WorldState {
     void begin_step(double dt);
     void list_awake(std::uint32_t body);
     void sum_forces();
-    void solve_contacts(double dt);
+    void solve_constraints(double dt);
     void fly_free_bodies(double dt);
     void move_kinematic_bodies(double dt);
     void finish_bodies();
@@ -242,6 +255,19 @@ struct WorldState {
     void wake_neighbours(std::uint32_t body);
     void fall_asleep(double dt);
     void join_islands();
+
+    // joints.cpp: what binds bodies.
+    void list_active_joints();
+    void wake_jointed();
+    void break_joints();
+    template <class Visit>
+    void each_bond(const Visit& visit) const;
+    void remove_joint(std::uint32_t joint);
+    void remove_joints_of(std::uint32_t body);
+    std::uint32_t index(JointId<D> joint) const;
+    const CouplingRecord<D>* coupling_of(std::uint32_t joint) const;
+    JointPose<D> joint_pose(std::uint32_t joint) const { return pose_of<D>(joints[joint], states, masses); }
+    Load<D> joint_load(std::uint32_t joint) const;
 
     // queries.cpp: questions between steps.
     void keep_in_boxes(double dt);

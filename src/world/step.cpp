@@ -53,7 +53,7 @@ void WorldState<D>::step(double dt) {
     wake_touched(dt);           // sleepers that are being hit
     place_contacts();           // what came out, for the solver
     sum_forces();               // gravity, the user's forces, generators
-    solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
+    solve_constraints(dt);      // bodies in contact or on joints: sub-steps of the solver
     fly_free_bodies(dt);        // all others: the integrator
     move_kinematic_bodies(dt);  // what only the user moves
     stop_at_obstacles();        // nothing passes through what stands still
@@ -61,6 +61,7 @@ void WorldState<D>::step(double dt) {
     keep_in_boxes(dt);          // queries find the bodies where they are now
     report_contacts();          // what began, ended and hit
     sense();                    // who is inside the sensors
+    break_joints();             // those that were pulled too hard
     fall_asleep(dt);            // islands at rest
 
     time += dt;
@@ -114,16 +115,17 @@ void WorldState<D>::sum_forces() {
 }
 
 template <int D>
-void WorldState<D>::solve_contacts(double dt) {
+void WorldState<D>::solve_constraints(double dt) {
+    list_active_joints();
     solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
-                definition.restitution_threshold});
+                definition.restitution_threshold, joints, active_joints, couplings, active_couplings});
 }
 
 template <int D>
 void WorldState<D>::fly_free_bodies(double dt) {
     flying.clear();
     for (const std::uint32_t i : awake) {
-        if (types[i] == BodyType::dynamic && !solver.has_contact(i)) flying.push_back(i);
+        if (types[i] == BodyType::dynamic && !solver.moves(i)) flying.push_back(i);
     }
     const LoadModel<D> model{definition.gravity, applied, flying, forces};
     fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);
