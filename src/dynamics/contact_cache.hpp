@@ -56,8 +56,8 @@ struct ContactCache {
 };
 
 /// What a manifold outlives: a way of this share of the smaller body's radius, and a turn by this angle.
-constexpr double reuse_share = 2e-3;
-constexpr double reuse_turn = 1e-3;  // rad
+constexpr double reuse_share = 5e-3;
+constexpr double reuse_turn = 5e-3;  // rad
 
 template <int D>
 bool ContactCache<D>::holds(const RelativePose<D>& now) const {

@@ -25,6 +25,7 @@ void WorldState<D>::add_contact(const PairKey& key) {
     c.body_b = shapes[key.b].body;
     c.on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
     set_surface(c);
+    facet_contacts += c.facet != no_part;
     contacts.push_back(c);
     caches.emplace_back();
     loosen(static_cast<std::uint32_t>(contacts.size() - 1));
@@ -53,6 +54,7 @@ void WorldState<D>::remove_contact(std::size_t contact) {
     const ContactRecord<D>& c = contacts[i];
     if (c.loose != c.nowhere) loose[c.loose] = c.nowhere;
     if (c.on_fixed) --fixed_contacts_of[mover(c)];
+    facet_contacts -= c.facet != no_part;
     pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
     if (c.touching && c.facet == no_part) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
     if (i != last) {

@@ -23,7 +23,7 @@ void WorldState<D>::report_contacts() {
     events.clear();
     std::swap(events.contact_ends, dropped_contacts);
     touch_changes.clear();
-    solver.report([&](std::uint32_t i) {
+    solver.report(scheduler.get(), [&](std::uint32_t i) {
         solver.read(caches[i], contacts[i]);
         touch_changes.push_back(i);
     });
@@ -51,7 +51,7 @@ template <int D>
 void WorldState<D>::report_terrain() {
     std::swap(terrain_before, terrain_touched);
     terrain_touched.clear();
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+    for (std::uint32_t i = 0; i < contacts.size() && facet_contacts > 0; ++i) {
         const ContactRecord<D>& c = contacts[i];
         if (c.touching && c.facet != no_part) terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
     }

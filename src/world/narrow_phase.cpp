@@ -111,13 +111,15 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
 template <int D>
 void WorldState<D>::collide(double dt) {
     list_patches();
-    solver.refresh(states, static_cast<float>(speculative_distance), [&](std::uint32_t i) {
+    solver.refresh(states, static_cast<float>(speculative_distance), scheduler.get(), [&](std::uint32_t i) {
         if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
     });
-    for (const std::uint32_t i : loose) {
-        ContactRecord<D>& c = contacts[i];
-        if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[i], dt);
-    }
+    run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            ContactRecord<D>& c = contacts[loose[k]];
+            if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[loose[k]], dt);
+        }
+    });
     merge_patches();
 }
 

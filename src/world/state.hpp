@@ -5,6 +5,7 @@
 
 #include "carom/world.hpp"
 #include "collision/tree.hpp"
+#include "core/crew.hpp"
 #include "core/pair_set.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
@@ -80,6 +81,7 @@ struct EventBuffers {
 template <int D>
 struct WorldState {
     WorldDefinition<D> definition;
+    std::shared_ptr<Scheduler> scheduler;  ///< or none: then all is done by the calling thread
     double time = 0;
     double last_step = 0;
     std::uint64_t step_count = 0;
@@ -123,6 +125,8 @@ struct WorldState {
     // Working space of a step.
     std::vector<std::uint32_t> awake;  ///< indices of the awake dynamic bodies and the moving kinematic ones
     std::vector<std::uint8_t> moving;  ///< by body index: how it moves in this step
+    std::size_t facet_contacts = 0;    ///< how many contacts are with a facet of a terrain
+    bool some_locked = false;          ///< has any body ever had a locked axis?
     std::uint32_t bullets = 0;         ///< how many bodies are bullets
     std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
     std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
