@@ -137,7 +137,7 @@ struct Folder {
     }
     template <int D>
     void operator()(const ContactCache<D>& c) {
-        all(c.pose.position, c.pose.rotation, c.normal, c.way, c.count);
+        all(c.pose.position, c.pose.rotation, c.normal, c.gap, c.way, c.count);
         for (int i = 0; i < c.count; ++i) all(c.points[i].on_a, c.points[i].on_b, c.points[i].separation);
     }
     void operator()(const SpringSettings& s) { all(s.frequency, s.damping_ratio, s.rest, s.most); }
