@@ -42,6 +42,11 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.types.emplace_back();
         w.infos.emplace_back();
         w.applied.emplace_back();
+        w.moving.push_back(stands_still);
+        w.place.emplace_back();
+        w.loads.emplace_back();
+        w.varies.emplace_back();
+        w.touched.emplace_back();
     }
     w.states[i] = {};
     w.masses[i] = {};
@@ -107,7 +112,9 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
         s.velocity = free_components<D>(m.locks, definition.velocity);
         s.angular_velocity = free_spin<D>(m.locks, definition.angular_velocity);
         w.movable.push_back(i);
+        w.roused.push_back(i);
     }
+    w.bullets += definition.bullet;
     for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
     const auto id = w.body_slots.template id<BodyId<D>>(i);
     w.body_ids.push_back(id);
@@ -128,8 +135,10 @@ void World<D>::remove_body(BodyId<D> body) {
         w.shape_slots.release(shape.index);
     }
     w.forces.remove_all_of(body);
+    w.bullets -= w.infos[i].bullet;
     w.infos[i] = {};
     w.masses[i] = {};
+    w.types[i] = BodyType::fixed;  // so that no list of what moves keeps it
     std::erase(w.to_wake, i);
     std::erase(w.movable, i);
     std::erase(w.body_ids, body);
@@ -197,9 +206,7 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     w.forget_manifolds_of(body);
     w.remove_leaf(i);
     w.insert_leaf(i);
-    for (ContactRecord<D>& c : w.contacts) {
-        if (c.shape_a == i || c.shape_b == i) w.set_surface(c);
-    }
+    w.each_contact_of_shape(i, [&](std::uint32_t contact) { w.set_surface(w.contacts[contact]); });
     w.place_visits_anew(i);
 }
 
@@ -220,8 +227,13 @@ void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
     };
     change(i, k);
     change(k, i);
-    w.remove_contacts_if(
-        [&](const ContactRecord<D>& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(i, k); });
+    for (const bool on_fixed : {false, true}) {
+        w.each_contact_of(i, on_fixed, [&](std::uint32_t contact) {
+            const ContactRecord<D>& c = w.contacts[contact];
+            if (c.body_a == k || c.body_b == k) w.picked.push_back(contact);
+        });
+    }
+    w.remove_picked_contacts();
     for (const ShapeId<D>& id : w.infos[i].shapes) w.mark_moved(id.index);
 }
 
@@ -288,6 +300,7 @@ void World<D>::set_velocity(BodyId<D> body, const Vec<D>& velocity) {
     require_finite(velocity, "velocity");
     if (state_->types[i] == BodyType::fixed) throw Error("velocity: a fixed body has none");
     state_->states[i].velocity = free_components<D>(state_->masses[i].locks, velocity);
+    state_->roused.push_back(i);
     state_->wake(i);
 }
 
@@ -297,6 +310,7 @@ void World<D>::set_angular_velocity(BodyId<D> body, const Angular<D>& angular_ve
     require_finite(angular_velocity, "angular_velocity");
     if (state_->types[i] == BodyType::fixed) throw Error("angular_velocity: a fixed body has none");
     state_->states[i].angular_velocity = free_spin<D>(state_->masses[i].locks, angular_velocity);
+    state_->roused.push_back(i);
     state_->wake(i);
 }
 
@@ -331,6 +345,7 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         w.states[i].angular_velocity = {};
     } else {
         w.movable.push_back(i);
+        w.roused.push_back(i);
     }
     w.update_mass(i);
     for (const ShapeId<D>& id : w.infos[i].shapes) w.insert_leaf(id.index);

@@ -136,15 +136,29 @@ bool WorldState<D>::overlap(std::uint32_t shape_a, std::uint32_t shape_b) const 
 template <int D>
 void WorldState<D>::sense() {
     std::swap(events.sensor_ends, dropped_visits);
-    for (SensorPair& pair : sensor_pairs) {
-        const std::uint32_t a = shapes[pair.sensor].body, b = shapes[pair.visitor].body;
-        if (!any_moves(a, b) && !pair.placed_anew) continue;
+    if (sensor_pairs.empty()) return placed_anew.clear();
+    for (const std::uint32_t body : awake) {
+        for (const ShapeId<D>& id : infos[body].shapes)
+            sensor_links.each(id.index, [&](std::uint32_t pair) { picked.push_back(pair); });
+    }
+    for (const std::uint32_t shape : placed_anew) {
+        sensor_links.each(shape, [&](std::uint32_t pair) {
+            if (sensor_pairs[pair].placed_anew) picked.push_back(pair);
+        });
+    }
+    placed_anew.clear();
+    std::ranges::sort(picked);
+    picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+    for (const std::uint32_t i : picked) {
+        SensorPair& pair = sensor_pairs[i];
         pair.placed_anew = false;
+        const std::uint32_t a = shapes[pair.sensor].body, b = shapes[pair.visitor].body;
         const bool was_inside = pair.inside;
         pair.inside = !infos[a].disabled && !infos[b].disabled && overlap(pair.sensor, pair.visitor);
         if (pair.inside && !was_inside) events.sensor_begins.push_back({names(pair.sensor, pair.visitor)});
         if (!pair.inside && was_inside) events.sensor_ends.push_back({names(pair.sensor, pair.visitor)});
     }
+    picked.clear();
 }
 
 #define CAROM_INSTANTIATE(D)                                                        \

@@ -37,6 +37,23 @@ Aabb<D> box_in(const Transform<D>& frame, const Aabb<D>& box) {
     return {center - reach, center + reach};
 }
 
+/// Removes the picked ones of `items` by `remove(index)`, which moves the last into the gap; so the order of
+/// what stays depends on nothing but what goes.
+template <class Item, class Remove>
+void remove_each(std::vector<std::uint32_t>& picked, const std::vector<Item>& items, const Remove& remove) {
+    std::ranges::sort(picked);
+    picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+    std::size_t left = 0, right = picked.size();
+    while (left < right) {
+        const std::size_t last = items.size() - 1;
+        remove(picked[left]);
+        // Where the last is picked as well, it goes from the gap that it has come to.
+        const bool again = right > left + 1 && picked[right - 1] == last;
+        again ? --right : ++left;
+    }
+    picked.clear();
+}
+
 }  // namespace
 
 template <int D>
@@ -139,15 +156,24 @@ void WorldState<D>::find_pairs() {
     new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
     for (const PairKey& key : new_pairs) {
         pairs.insert(key);
-        if (shapes[key.a].definition.sensor) {
-            sensor_pairs.push_back({key.a, key.b});
-        } else if (shapes[key.b].definition.sensor) {
-            sensor_pairs.push_back({key.b, key.a});
-        } else {
-            contacts.push_back(new_contact(key));
-            caches.emplace_back();
+        const bool a_senses = shapes[key.a].definition.sensor, b_senses = shapes[key.b].definition.sensor;
+        if (!a_senses && !b_senses) {
+            add_contact(key);
+            continue;
         }
+        sensor_links.add(static_cast<std::uint32_t>(sensor_pairs.size()), key.a, key.b);
+        sensor_pairs.push_back(a_senses ? SensorPair{key.a, key.b} : SensorPair{key.b, key.a});
+        placed_anew.push_back(key.a);
     }
+}
+
+template <int D>
+void WorldState<D>::add_contact(const PairKey& key) {
+    const ContactRecord<D> contact = new_contact(key);
+    contact_links.add(static_cast<std::uint32_t>(contacts.size()), contact_list(key.a, contact.on_fixed),
+                      contact_list(key.b, contact.on_fixed));
+    contacts.push_back(contact);
+    caches.emplace_back();
 }
 
 /// Does a shape meet the facets of a terrain here? Sensors care for the whole.
@@ -207,17 +233,22 @@ void WorldState<D>::set_surface(ContactRecord<D>& c) const {
 /// Forgets the pairs whose boxes parted; only a box that is new can have left another.
 template <int D>
 void WorldState<D>::drop_pairs() {
-    if (moved_shapes.empty()) return;
-    for (std::size_t i = 0; i < contacts.size();) {
-        const ContactRecord<D>& c = contacts[i];
-        const bool changed = has_new_box[c.shape_a] || has_new_box[c.shape_b];
-        !changed || are_near(c) ? void(++i) : remove_contact(i);
+    picked.clear();
+    for (const std::uint32_t shape : moved_shapes) {
+        each_contact_of_shape(shape, [&](std::uint32_t contact) {
+            if (!are_near(contacts[contact])) picked.push_back(contact);
+        });
     }
-    for (std::size_t i = 0; i < sensor_pairs.size();) {
-        const SensorPair& pair = sensor_pairs[i];
-        const bool near = overlaps(fat_box(shapes[pair.sensor]), fat_box(shapes[pair.visitor]));
-        near ? void(++i) : remove_visit(i);
+    remove_picked_contacts();
+    if (sensor_pairs.empty()) return;
+    for (const std::uint32_t shape : moved_shapes) {
+        sensor_links.each(shape, [&](std::uint32_t pair) {
+            const ShapeRecord<D>&sensor = shapes[sensor_pairs[pair].sensor],
+                  &visitor = shapes[sensor_pairs[pair].visitor];
+            if (!overlaps(fat_box(sensor), fat_box(visitor))) picked.push_back(pair);
+        });
     }
+    remove_picked_visits();
 }
 
 template <int D>
@@ -236,28 +267,40 @@ void WorldState<D>::remove_contact(std::size_t contact) {
     const ContactRecord<D>& c = contacts[contact];
     pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
     if (c.touching && c.facet == no_part) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
-    contacts[contact] = contacts.back();
+    const std::size_t last = contacts.size() - 1;
+    contact_links.remove(static_cast<std::uint32_t>(contact));
+    if (contact != last) {
+        contacts[contact] = contacts[last];
+        caches[contact] = caches[last];
+        contact_links.renumber(static_cast<std::uint32_t>(last), static_cast<std::uint32_t>(contact));
+    }
     contacts.pop_back();
-    caches[contact] = caches.back();
     caches.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_picked_contacts() {
+    remove_each(picked, contacts, [&](std::uint32_t contact) { remove_contact(contact); });
 }
 
 /// The shapes of the body, or its centre of mass, changed.
 template <int D>
 void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        if (contacts[i].body_a == body || contacts[i].body_b == body) caches[i].forget();
+    for (const ShapeId<D>& id : infos[body].shapes) {
+        each_contact_of_shape(id.index, [&](std::uint32_t contact) { caches[contact].forget(); });
     }
 }
 
 template <int D>
 void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
-    remove_contacts_if([&](const ContactRecord<D>& c) { return c.shape_a == shape || c.shape_b == shape; });
+    each_contact_of_shape(shape, [&](std::uint32_t contact) { picked.push_back(contact); });
+    remove_picked_contacts();
 }
 
 template <int D>
 void WorldState<D>::place_visits_anew(std::uint32_t shape) {
-    for (SensorPair& pair : sensor_pairs) pair.placed_anew |= pair.sensor == shape || pair.visitor == shape;
+    placed_anew.push_back(shape);
+    sensor_links.each(shape, [&](std::uint32_t pair) { sensor_pairs[pair].placed_anew = true; });
 }
 
 template <int D>
@@ -265,21 +308,31 @@ void WorldState<D>::remove_visit(std::size_t sensor_pair) {
     const SensorPair& pair = sensor_pairs[sensor_pair];
     pairs.erase(PairKey::of(pair.sensor, pair.visitor));
     if (pair.inside) dropped_visits.push_back({names(pair.sensor, pair.visitor)});
-    sensor_pairs[sensor_pair] = sensor_pairs.back();
+    const std::size_t last = sensor_pairs.size() - 1;
+    sensor_links.remove(static_cast<std::uint32_t>(sensor_pair));
+    if (sensor_pair != last) {
+        sensor_pairs[sensor_pair] = sensor_pairs[last];
+        sensor_links.renumber(static_cast<std::uint32_t>(last), static_cast<std::uint32_t>(sensor_pair));
+    }
     sensor_pairs.pop_back();
 }
 
 template <int D>
+void WorldState<D>::remove_picked_visits() {
+    remove_each(picked, sensor_pairs, [&](std::uint32_t pair) { remove_visit(pair); });
+}
+
+template <int D>
 void WorldState<D>::remove_visits_of(std::uint32_t shape) {
-    for (std::size_t i = 0; i < sensor_pairs.size();) {
-        const bool its_own = sensor_pairs[i].sensor == shape || sensor_pairs[i].visitor == shape;
-        its_own ? remove_visit(i) : void(++i);
-    }
+    sensor_links.each(shape, [&](std::uint32_t pair) { picked.push_back(pair); });
+    remove_picked_visits();
 }
 
 template <int D>
 void WorldState<D>::remove_contacts_of(std::uint32_t body) {
-    remove_contacts_if([&](const ContactRecord<D>& c) { return c.body_a == body || c.body_b == body; });
+    for (const ShapeId<D>& id : infos[body].shapes)
+        each_contact_of_shape(id.index, [&](std::uint32_t contact) { picked.push_back(contact); });
+    remove_picked_contacts();
 }
 
 #define CAROM_INSTANTIATE(D)                                                             \
@@ -291,7 +344,7 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
     template bool WorldState<D>::is_terrain_contact(std::uint32_t, std::uint32_t) const; \
     template void WorldState<D>::find_pairs();                                           \
     template void WorldState<D>::drop_pairs();                                           \
-    template void WorldState<D>::remove_contact(std::size_t);                            \
+    template void WorldState<D>::remove_picked_contacts();                               \
     template void WorldState<D>::remove_visits_of(std::uint32_t);                        \
     template void WorldState<D>::forget_manifolds_of(std::uint32_t);                     \
     template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                \

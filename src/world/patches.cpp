@@ -37,18 +37,21 @@ struct View {
 template <int D>
 void WorldState<D>::list_fixed_contacts() {
     fixed_contacts.clear();
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        const ContactRecord<D>& c = contacts[i];
-        if (!c.on_fixed) continue;
-        const bool a_fixed = types[c.body_a] == BodyType::fixed;
-        const std::uint32_t body = a_fixed ? c.body_b : c.body_a;
+    for (const std::uint32_t body : awake) {
         if (moving[body] != moves_freely) continue;
-        fixed_contacts.push_back(
-            {body, a_fixed ? c.shape_b : c.shape_a, a_fixed ? c.shape_a : c.shape_b, c.facet, i});
+        for (const ShapeId<D>& id : infos[body].shapes) {
+            const auto begin = static_cast<std::ptrdiff_t>(fixed_contacts.size());
+            contact_links.each(contact_list(id.index, true), [&](std::uint32_t i) {
+                const ContactRecord<D>& c = contacts[i];
+                const std::uint32_t other = c.shape_a == id.index ? c.shape_b : c.shape_a;
+                fixed_contacts.push_back({body, id.index, other, c.facet, i});
+            });
+            std::sort(fixed_contacts.begin() + begin, fixed_contacts.end(),
+                      [](const FixedContact& a, const FixedContact& b) {
+                          return std::tie(a.other, a.facet) < std::tie(b.other, b.facet);
+                      });
+        }
     }
-    std::ranges::sort(fixed_contacts, [](const FixedContact& a, const FixedContact& b) {
-        return std::tie(a.body, a.shape, a.other, a.facet) < std::tie(b.body, b.shape, b.other, b.facet);
-    });
 
     // Only a shape that has several needs to know what they were.
     patches_before.clear();

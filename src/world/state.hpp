@@ -5,13 +5,13 @@
 
 #include "carom/world.hpp"
 #include "collision/tree.hpp"
+#include "core/adjacency.hpp"
 #include "core/pair_set.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
-#include "dynamics/islands.hpp"
 #include "geometry/shape.hpp"
 #include "solver/solver.hpp"
 #include "world/contact_cache.hpp"
@@ -34,6 +34,13 @@ enum : std::uint8_t {
     stands_still,   ///< fixed, at rest or asleep
     moved_by_user,  ///< kinematic, with a velocity
     moves_freely,   ///< dynamic and awake
+};
+
+/// What is known of a body while islands at rest are looked for.
+enum class Rest : std::uint8_t {
+    none,      ///< it stays awake
+    possible,  ///< it rests itself
+    seen,      ///< it belongs to the island that is being gathered, or to one that fell asleep
 };
 
 /// A contact of an awake dynamic body with a fixed shape.
@@ -106,7 +113,11 @@ struct WorldState {
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
     std::vector<ContactCache<D>> caches;  ///< by contact: where its points were found
+    Adjacency contact_links;              ///< contacts between `contact_list`s of shapes
     std::vector<SensorPair> sensor_pairs;
+    Adjacency sensor_links;                  ///< sensor pairs between shapes
+    std::vector<std::uint32_t> placed_anew;  ///< shapes that have sensor pairs which are so
+    std::uint32_t bullets = 0;               ///< how many bodies are
 
     // Results of the last step.
     std::vector<MovedBody<D>> moved_bodies;
@@ -119,7 +130,8 @@ struct WorldState {
         terrain_before;  ///< now and a step ago, in the order of shapes
 
     // Working space of a step.
-    std::vector<std::uint32_t> awake;   ///< indices of the awake dynamic bodies and the moving kinematic ones
+    std::vector<std::uint32_t> awake;   ///< the awake dynamic bodies and the moving kinematic ones, by index
+    std::vector<std::uint32_t> roused;  ///< bodies that may belong to `awake` by now
     std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
     std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
     std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
@@ -129,17 +141,20 @@ struct WorldState {
     std::vector<std::uint8_t> touched;
     std::vector<BodyState<D>> before;  ///< states of `awake` at the start of the step
     std::vector<std::uint32_t> place;  ///< in `awake` and `before`, by body index, of those that are there
-    std::vector<FixedContact> fixed_contacts;      ///< by body, shape and fixed shape
+    std::vector<FixedContact> fixed_contacts;      ///< by place in `awake`, shape and fixed shape
     std::vector<ContactRecord<D>> patches_before;  ///< of shapes that have several, in the last step
     std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
     std::vector<ManifoldPoint<D>> patch_points;
     std::vector<std::uint32_t> to_wake;
-    Islands islands;
+    std::vector<Rest> rest;             ///< by place in `awake`
+    std::vector<std::uint32_t> island;  ///< bodies that hang together
+    std::vector<std::uint32_t> picked;  ///< contacts or sensor pairs that are to be removed, or worked on
     Solver<D> solver;
 
     // step.cpp: the stages of a step, in the order of `step`.
     void step(double dt);
     void begin_step(double dt);
+    void list_moving();
     void list_awake(std::uint32_t body);
     void sum_forces();
     void solve_contacts(double dt);
@@ -175,6 +190,7 @@ struct WorldState {
     // continuous.cpp: what is fast.
     void meet_ahead(ContactRecord<D>& contact, double dt) const;
     void stop_at_obstacles();
+    void stop_bullets();
     void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);
 
     // patches.cpp: flush fixed shapes are one surface.
@@ -209,7 +225,10 @@ struct WorldState {
     void wake_all();
     void wake_neighbours(std::uint32_t body);
     void fall_asleep(double dt);
-    void join_islands();
+    bool note_rest(std::uint32_t body, double dt);
+    bool gather_resting(std::uint32_t body);
+    template <class Visit>
+    void each_tied(std::uint32_t body, const Visit& visit) const;
 
     // queries.cpp: questions between steps.
     void keep_in_boxes(double dt);
@@ -241,16 +260,28 @@ struct WorldState {
     std::uint32_t index(BodyId<D> body) const;
     std::uint32_t index(ShapeId<D> shape) const;
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
-    template <class Condition>
-    void remove_contacts_if(const Condition& condition) {
-        for (std::size_t i = 0; i < contacts.size();) condition(contacts[i]) ? remove_contact(i) : void(++i);
+    /// A shape has its contacts in two lists: those of which one body is fixed, and the others.
+    static std::uint32_t contact_list(std::uint32_t shape, bool on_fixed) { return 2 * shape + on_fixed; }
+    /// Calls `visit(contact)` for each contact of the shape, or of the body that is or is not with a fixed
+    /// one.
+    template <class Visit>
+    void each_contact_of_shape(std::uint32_t shape, const Visit& visit) const {
+        for (const bool on_fixed : {false, true}) contact_links.each(contact_list(shape, on_fixed), visit);
     }
-    void remove_contacts_of(std::uint32_t body);
+    template <class Visit>
+    void each_contact_of(std::uint32_t body, bool on_fixed, const Visit& visit) const {
+        for (const ShapeId<D>& id : infos[body].shapes)
+            contact_links.each(contact_list(id.index, on_fixed), visit);
+    }
+    void add_contact(const PairKey& key);
     void remove_contact(std::size_t contact);
+    void remove_picked_contacts();
+    void remove_contacts_of(std::uint32_t body);
     void remove_contacts_of_shape(std::uint32_t shape);
+    void remove_visit(std::size_t sensor_pair);
+    void remove_picked_visits();
     void remove_visits_of(std::uint32_t shape);
     void place_visits_anew(std::uint32_t shape);
-    void remove_visit(std::size_t sensor_pair);
 };
 
 /// Velocity of a body below which, and way within `time_to_sleep` less than which, it counts as at rest.
