@@ -205,7 +205,7 @@ struct WorldState {
     void lay_on_fixed_face(Manifold<D>& manifold, const ContactRecord<D>& contact,
                            const Transform<D>& b_in_a) const;
     bool is_artefact_of_seam(const ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b,
-                             const ContactRecordPoint<D>& point) const;
+                             const Vec<D>& middle, double separation) const;
     Rotation<D> axes_of(std::uint32_t shape) const;
     void pass_one_way(ContactRecord<D>& contact, bool was_near) const;
     void drag_along(ContactRecord<D>& contact) const;
