@@ -10,6 +10,11 @@ namespace carom::detail {
 /// caller's. The order of a list depends on its history; who needs one that does not sorts what it finds.
 class Adjacency {
   public:
+    /// Lets there be room for nodes below this number, so that the first link of one does not pay for it.
+    void make_room(std::uint32_t nodes) {
+        if (nodes > first_.size()) first_.resize(nodes, none);
+    }
+
     void add(std::uint32_t link, std::uint32_t a, std::uint32_t b) {
         if (link >= links_.size()) links_.resize(link + 1);
         links_[link].node[0] = a;

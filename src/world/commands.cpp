@@ -68,7 +68,11 @@ template <int D>
 ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
                      Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
-    if (i == w.shapes.size()) w.shapes.emplace_back();
+    if (i == w.shapes.size()) {
+        w.shapes.emplace_back();
+        w.has_new_box.push_back(0);
+        w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
+    }
     w.shapes[i] = {std::move(shape), definition, body};
     w.shapes[i].core = core_of(w.shapes[i].shape);
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);

@@ -63,7 +63,6 @@ const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>& shape) const {
 
 template <int D>
 void WorldState<D>::mark_moved(std::uint32_t shape) {
-    has_new_box.resize(shapes.size(), 0);
     if (has_new_box[shape]) return;
     has_new_box[shape] = 1;
     moved_shapes.push_back(shape);
