@@ -29,13 +29,13 @@ struct BodyMass {
     Inertia<D> inertia{};     ///< in the body's frame, about the centre of mass
     Inertia<D> inverse_inertia{};
     double radius = 0;         ///< of a ball about the centre of mass that holds every shape
+    double core_radius = 0;    ///< of the smallest ball that no wall may pass (see world/continuous.cpp)
     double cross_section = 0;  ///< of a ball of the same measure as the shapes (see `Wind`)
     double gravity_scale = 1;
     double linear_damping = 0;
     double angular_damping = 0;
     Locks locks{};
     bool isotropic = true;  ///< the inertia is the same about every axis: rotation does not precess
-    bool locked = false;    ///< any of `locks`
 };
 
 /// Force and torque (about the centre of mass) that act on a body through a step.

@@ -9,7 +9,7 @@
 namespace carom::detail {
 
 /// One point of a persistent contact. Arms lead from the centres of mass to the point, along the world's
-/// axes. The solver reads the first members by fours of floats, so their order matters to it.
+/// axes.
 template <int D>
 struct ContactRecordPoint {
     Vec<D, float> arm_a{}, arm_b{};
@@ -19,7 +19,17 @@ struct ContactRecordPoint {
     std::uint32_t feature = 0;
 };
 
-/// Two shapes whose bounds overlap, from step to step. `count` is zero while they are out of reach.
+/// Where the solver keeps a contact: its colour, and its place among the contacts of that colour.
+struct ContactPlace {
+    static constexpr std::uint8_t nowhere = 255;
+    std::uint8_t colour = nowhere;
+    std::uint32_t index = 0;
+
+    explicit operator bool() const { return colour != nowhere; }
+};
+
+/// Two shapes whose bounds overlap, from step to step. `count` is zero while they are out of reach. While the
+/// solver has the contact, what the solver knows of it is newer than what stands here.
 template <int D>
 struct ContactRecord {
     std::uint32_t shape_a = 0, shape_b = 0;
@@ -46,6 +56,9 @@ struct ContactRecord {
     bool passing = false;            ///< through a one-way shape
     bool merged = false;             ///< its points are kept by another contact of the same patch
     float nearest = 0;               ///< if merged: the smallest separation of its own points, m
+    ContactPlace place{};
+    static constexpr std::uint32_t nowhere = ~std::uint32_t{0};
+    std::uint32_t loose = nowhere;  ///< its place in the list of those that are looked at one by one
 };
 
 /// The contact with a and b exchanged.

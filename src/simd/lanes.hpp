@@ -17,6 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<float>;
 using Register = hn::Vec<Tag>;
+using WideTag = hn::Repartition<double, Tag>;
+using WideRegister = hn::Vec<WideTag>;
 
 /// Four floats each for the lanes 0, 4, 8, ... of `index`.
 template <int n>
@@ -41,6 +43,18 @@ CAROM_INLINE void store_quads(float* base, const std::uint32_t* index, std::size
     }
 }
 
+/// Two doubles each for the lanes 0, 2, 4, ... of `index`.
+template <int n>
+CAROM_INLINE auto load_pairs(const double* base, const std::uint32_t* index, std::size_t stride) {
+    const hn::FixedTag<double, n> tag;
+    if constexpr (n == 2) {
+        return hn::LoadU(tag, base + index[0] * stride);
+    } else {
+        return hn::Combine(tag, load_pairs<n / 2>(base, index + n / 2, stride),
+                           load_pairs<n / 2>(base, index, stride));
+    }
+}
+
 /// Transposes each group of four lanes: from a register a lane to a register a component, and back.
 CAROM_INLINE void transpose(Register& a, Register& b, Register& c, Register& d) {
     const Tag tag;
@@ -55,6 +69,44 @@ CAROM_INLINE void transpose(Register& a, Register& b, Register& c, Register& d) 
     d = hn::BitCast(tag, hn::InterleaveUpper(pairs, high_ab, high_cd));
 }
 
+/// As many doubles side by side as `Lanes` has floats: two registers of them.
+class WideLanes {
+  public:
+    explicit WideLanes(double all) : low_(hn::Set(WideTag(), all)), high_(low_) {}
+    WideLanes() : WideLanes(0.0) {}
+    WideLanes(WideRegister low, WideRegister high) : low_(low), high_(high) {}
+
+    WideRegister low() const { return low_; }
+    WideRegister high() const { return high_; }
+
+    friend WideLanes operator+(WideLanes a, WideLanes b) {
+        return {hn::Add(a.low_, b.low_), hn::Add(a.high_, b.high_)};
+    }
+    friend WideLanes operator-(WideLanes a, WideLanes b) {
+        return {hn::Sub(a.low_, b.low_), hn::Sub(a.high_, b.high_)};
+    }
+    friend WideLanes operator*(WideLanes a, WideLanes b) {
+        return {hn::Mul(a.low_, b.low_), hn::Mul(a.high_, b.high_)};
+    }
+    friend WideLanes operator-(WideLanes a) { return {hn::Neg(a.low_), hn::Neg(a.high_)}; }
+
+    CAROM_INLINE friend void gather_pairs(const double* base, const std::uint32_t* index, std::size_t stride,
+                                          WideLanes& a, WideLanes& b) {
+        constexpr int half = HWY_LANES(double);
+        const auto both = [&](const std::uint32_t* of, WideRegister& first, WideRegister& second) {
+            const auto even = load_pairs<half>(base, of, stride),
+                       odd = load_pairs<half>(base, of + 1, stride);
+            first = hn::InterleaveLower(WideTag(), even, odd);
+            second = hn::InterleaveUpper(WideTag(), even, odd);
+        };
+        both(index, a.low_, b.low_);
+        both(index + half, a.high_, b.high_);
+    }
+
+  private:
+    WideRegister low_, high_;
+};
+
 /// Several floats side by side, as many as the instruction set has in a register. Sums, products, quotients
 /// and roots are those of IEEE 754 in every lane, so a computation gives the same bits in lanes of any width.
 class Lanes {
@@ -62,12 +114,23 @@ class Lanes {
     static constexpr int count = HWY_LANES(float);
     struct Mask {
         hn::Mask<Tag> m;
-        friend Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
+        friend Mask both(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
         friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
+        friend Mask operator!(Mask a) { return {hn::Not(a.m)}; }
     };
 
     Lanes() : v_(hn::Zero(Tag())) {}
     explicit Lanes(float all) : v_(hn::Set(Tag(), all)) {}
+    /// Rounded to the nearest.
+    explicit Lanes(WideLanes wide) {
+        const hn::Half<Tag> half;
+        v_ = hn::Combine(Tag(), hn::DemoteTo(half, wide.high()), hn::DemoteTo(half, wide.low()));
+    }
+    explicit operator WideLanes() const {
+        const hn::Half<Tag> half;
+        return {hn::PromoteTo(WideTag(), hn::LowerHalf(half, v_)),
+                hn::PromoteTo(WideTag(), hn::UpperHalf(half, v_))};
+    }
     static Lanes load(const float* lanes) { return hn::LoadU(Tag(), lanes); }
 
     friend Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v_, b.v_); }
@@ -81,6 +144,12 @@ class Lanes {
     friend Lanes fabs(Lanes a) { return hn::Abs(a.v_); }
     friend Lanes sqrt(Lanes a) { return hn::Sqrt(a.v_); }
     friend Lanes square_root(Lanes a) { return hn::Sqrt(a.v_); }
+    /// A bit a lane, the first lane in the lowest.
+    friend std::uint32_t bits_of(Mask mask) {
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(Tag(), mask.m, bytes);
+        return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
+    }
     friend bool any(Mask mask) { return !hn::AllFalse(Tag(), mask.m); }
     // The second operand where they are equal or one is not a number, like `a > b ? a : b`.
 #if HWY_ARCH_X86
@@ -131,3 +200,10 @@ class Lanes {
 };
 
 }  // namespace carom::detail::HWY_NAMESPACE
+
+namespace carom::detail {
+template <>
+struct WideOf<HWY_NAMESPACE::Lanes> {
+    using Type = HWY_NAMESPACE::WideLanes;
+};
+}  // namespace carom::detail

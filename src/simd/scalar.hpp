@@ -19,6 +19,16 @@ constexpr int lane_count = F::count;
 template <>
 inline constexpr int lane_count<float> = 1;
 
+/// As many doubles as `F` has floats.
+template <class F>
+struct WideOf;
+template <>
+struct WideOf<float> {
+    using Type = double;
+};
+template <class F>
+using Wide = typename WideOf<F>::Type;
+
 template <class F>
 CAROM_INLINE F load_lanes(const float* lanes) {
     return F::load(lanes);
@@ -32,12 +42,20 @@ inline float maximum(float a, float b) { return a > b ? a : b; }
 inline float minimum(float a, float b) { return a < b ? a : b; }
 inline float square_root(float a) { return std::sqrt(a); }
 inline bool any(bool mask) { return mask; }
+inline bool both(bool a, bool b) { return a && b; }
+inline std::uint32_t bits_of(bool mask) { return mask; }
 
 /// Reads four floats that lie side by side at `base + index[lane] · stride` for every lane.
 inline void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride, float& a,
                          float& b, float& c, float& d) {
     const float* p = base + index[0] * stride;
     a = p[0], b = p[1], c = p[2], d = p[3];
+}
+
+/// Reads two doubles that lie side by side at `base + index[lane] · stride` for every lane.
+inline void gather_pairs(const double* base, const std::uint32_t* index, std::size_t stride, double& a,
+                         double& b) {
+    a = base[index[0] * stride], b = base[index[0] * stride + 1];
 }
 
 /// Writes them back. No two lanes may have the same index.

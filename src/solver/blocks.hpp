@@ -43,8 +43,13 @@ class ContactBlocks {
     /// The blocks from `first` on, `count` of them.
     BlockSpan<D> span(std::size_t first, std::size_t count) {
         const std::size_t place = first * width();
-        return {rows_.data() + place * LaneStore<Rows>::fields, a_.data() + place, b_.data() + place,
-                traits_.data() + first, count};
+        BlockSpan<D> span;
+        span.rows = rows_.data() + place * LaneStore<Rows>::fields;
+        span.a = a_.data() + place;
+        span.b = b_.data() + place;
+        span.traits = traits_.data() + first;
+        span.blocks = count;
+        return span;
     }
     BlockSpan<D> span() { return span(0, blocks()); }
 

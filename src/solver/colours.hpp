@@ -1,14 +1,14 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace carom::detail {
 
-/// The two bodies of a contact: their slots, and a number that stays the same from step to step.
+/// The two bodies of a contact: their slots, and a number that does not depend on these.
 struct SlotPair {
     std::uint32_t a = 0, b = 0;
     std::uint32_t key = 0;
@@ -27,7 +27,7 @@ constexpr std::uint32_t pair_key(std::uint32_t body_a, std::uint32_t body_b) {
 /// overflow. Contacts with a body that cannot be pushed have the first colours, so that those in a block are
 /// alike.
 ///
-/// The contacts are taken in their order (greedy colouring), but the colour is drawn by lot among the free
+/// A contact keeps its colour for as long as the solver has it. The colour is drawn by lot among the free
 /// ones of the first few, and the lot follows from the pair. With the first free colour, contacts that are
 /// created alike, say all to the left of their boxes, would get the same colour and be solved before those
 /// to the right: a pyramid of 100 rows in the plane then leans by 28 cm within 500 steps, and with lots by 2.
@@ -37,29 +37,22 @@ class Colours {
     static constexpr int count = with_fixed + between_movable;
     static constexpr int overflow = count;
 
-    /// Slots below `first_movable` are of bodies that cannot be pushed; `slots` is one more than the last
-    /// slot.
-    void deal(std::span<const SlotPair> contacts, std::uint32_t first_movable, std::size_t slots) {
-        taken_.assign(slots, 0);
-        colour_.resize(contacts.size());
-        sizes_.fill(0);
-        for (std::size_t i = 0; i < contacts.size(); ++i) {
-            const auto [a, b, key] = contacts[i];
-            const bool fixed = a < first_movable || b < first_movable;
-            const std::uint64_t free = ~(taken_[a] | taken_[b]) & (fixed ? first_colours : ~first_colours);
-            const int colour = fixed ? std::countr_zero(free) : draw(free, static_cast<int>(key % lots));
-            const std::uint64_t bit = colour == overflow ? 0 : std::uint64_t{1} << colour;
-            if (a >= first_movable) taken_[a] |= bit;
-            if (b >= first_movable) taken_[b] |= bit;
-            colour_[i] = static_cast<std::uint8_t>(colour);
-            ++sizes_[colour];
-        }
+    /// Draws a colour, or `overflow`, for a contact. Slots below `first_movable` are of bodies that cannot be
+    /// pushed.
+    int take(const SlotPair& pair, std::uint32_t first_movable) {
+        const std::size_t slots = std::size_t{std::max(pair.a, pair.b)} + 1;
+        if (taken_.size() < slots) taken_.resize(slots, 0);
+        const bool fixed = pair.a < first_movable || pair.b < first_movable;
+        const std::uint64_t free =
+            ~(taken_[pair.a] | taken_[pair.b]) & (fixed ? first_colours : ~first_colours);
+        const int colour = fixed ? std::countr_zero(free) : draw(free, static_cast<int>(pair.key % lots));
+        set(pair, colour, first_movable, true);
+        return colour;
     }
-
-    /// Of the contact with this index, or `overflow`.
-    int operator[](std::size_t contact) const { return colour_[contact]; }
-    /// How many contacts have the colour, or none.
-    std::size_t size(int colour) const { return sizes_[colour]; }
+    /// The contact is no more.
+    void give_back(const SlotPair& pair, int colour, std::uint32_t first_movable) {
+        set(pair, colour, first_movable, false);
+    }
 
   private:
     static constexpr std::uint64_t first_colours = (std::uint64_t{1} << with_fixed) - 1;
@@ -71,9 +64,15 @@ class Colours {
         return std::countr_zero(free);
     }
 
+    void set(const SlotPair& pair, int colour, std::uint32_t first_movable, bool taken) {
+        if (colour == overflow) return;
+        const std::uint64_t bit = std::uint64_t{1} << colour;
+        for (const std::uint32_t slot : {pair.a, pair.b}) {
+            if (slot >= first_movable) taken_[slot] = taken ? taken_[slot] | bit : taken_[slot] & ~bit;
+        }
+    }
+
     std::vector<std::uint64_t> taken_;  ///< by slot: colours of its contacts
-    std::vector<std::uint8_t> colour_;
-    std::array<std::size_t, count + 1> sizes_{};
 };
 
 }  // namespace carom::detail

@@ -3,33 +3,35 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dynamics/contact.hpp"
 #include "solver/body_records.hpp"
 #include "solver/drive.hpp"
+#include "solver/marks.hpp"
 #include "solver/prepare.hpp"
 #include "solver/rows.hpp"
 
 namespace carom::detail {
 
 /// What some contact of a block has, so that the passes may leave out what none has.
-enum Trait : std::uint8_t { some_fixed = 1, some_round = 2, some_rolling = 4 };
+enum Trait : std::uint8_t {
+    some_fixed = 1,
+    some_round = 2,
+    some_rolling = 4,
+    some_bouncy = 8,
+    some_in_flight = 16,  ///< as `prepare` found it
+};
 
 /// Blocks of contacts, to be solved in this order. The contacts of a block share no body that can be pushed.
 template <int D>
 struct BlockSpan {
-    float* rows = nullptr;  ///< of `ContactRows<D, F>`
+    float* rows = nullptr;   ///< of `ContactRows<D, F>`
+    float* marks = nullptr;  ///< of `ContactMarks<D, F>`; the solving passes do without
     const std::uint32_t* a = nullptr;
-    const std::uint32_t* b = nullptr;  ///< slots of the bodies, one a lane
-    const std::uint8_t* traits = nullptr;
+    const std::uint32_t* b = nullptr;       ///< slots of the bodies, one a lane
+    const std::uint32_t* body_a = nullptr;  ///< their indices in the world
+    const std::uint32_t* body_b = nullptr;
+    std::uint8_t* traits = nullptr;
+    std::uint32_t* found = nullptr;  ///< a bit a lane, written by the passes that look for something
     std::size_t blocks = 0;
-};
-
-/// Which contact each lane of a block takes.
-template <int D>
-struct BlockSource {
-    const ContactRecord<D>* records = nullptr;
-    const std::uint32_t* index = nullptr;  ///< by lane; a lane without a contact may name any
-    const float* count = nullptr;          ///< by lane: how many points; 0 in a lane without a contact
 };
 
 /// All bodies with what drives them.
@@ -47,8 +49,10 @@ struct Passes {
     int width;
 
     // Over contacts.
-    /// Fills one block from contact records, and applies the impulses that they have kept.
-    void (*load)(const BlockSpan<D>&, const BlockSource<D>&, const RecordView<D>&);
+    /// Carries the points along with the bodies, and finds the contacts for which that does not do.
+    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, float reach, float most_turn);
+    /// Effective masses; applies the impulses that are kept; finds the contacts that have none.
+    void (*prepare)(const BlockSpan<D>&, const RecordView<D>&);
     void (*warm_start)(const BlockSpan<D>&, const RecordView<D>&);
     /// The records have to hold the change of velocity in place of the velocity and the acceleration by outer
     /// forces in place of the way.
@@ -57,7 +61,11 @@ struct Passes {
     void (*solve_and_tally)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
     void (*solve_with_friction)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
     void (*relax)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
+    /// Finds the contacts that push.
+    void (*find_pushing)(const BlockSpan<D>&);
     void (*tally)(const BlockSpan<D>&);
+    /// After the step: finds the contacts that have begun or ended to touch.
+    void (*touch)(const BlockSpan<D>&);
 
     // Over bodies.
     /// Takes the velocities as what the kept impulses make, and leaves what `look_ahead` wants.

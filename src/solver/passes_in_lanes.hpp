@@ -1,6 +1,5 @@
 #pragma once
 
-#include "solver/load_rows.hpp"
 #include "solver/passes.hpp"
 
 /// The passes written out for a lane type. Included by one source file for each width, which is compiled for
@@ -11,6 +10,7 @@ namespace carom::detail {
 template <int D, class F>
 struct PassesIn {
     using Rows = ContactRows<D, F>;
+    using Marks = ContactMarks<D, F>;
     static constexpr int width = lane_count<F>;
 
     static SubStep<F> widen(const SubStep<float>& s) {
@@ -38,16 +38,34 @@ struct PassesIn {
         }
     }
 
-    static void load(const BlockSpan<D>& span, const BlockSource<D>& source, const RecordView<D>& bodies) {
-        Rows& rows = *reinterpret_cast<Rows*>(span.rows);
-        Body<D, F> a = gather<F>(bodies, span.a), b = gather<F>(bodies, span.b);
-        const Extras extras = extras_of(span.traits[0]);
-        load_rows(rows, source, extras);
-        weigh_rows(rows, a.weight, b.weight, extras);
-        detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
-        const bool fixed = span.traits[0] & some_fixed;
-        scatter_velocity(bodies, span.a, a, fixed);
-        scatter_velocity(bodies, span.b, b, fixed);
+    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, float reach, float most_turn) {
+        Rows* rows = reinterpret_cast<Rows*>(span.rows);
+        const Marks* marks = reinterpret_cast<const Marks*>(span.marks);
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            const Pose<D, F> a = gather_pose<F>(poses, span.body_a + k * width),
+                             b = gather_pose<F>(poses, span.body_b + k * width);
+            span.found[k] = bits_of(detail::refresh(rows[k], marks[k], a, b, F(reach), F(most_turn)));
+        }
+    }
+
+    static void prepare(const BlockSpan<D>& span, const RecordView<D>& bodies) {
+        Rows* blocks = reinterpret_cast<Rows*>(span.rows);
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            Rows& rows = blocks[k];
+            const std::uint32_t *slots_a = span.a + k * width, *slots_b = span.b + k * width;
+            Body<D, F> a = gather<F>(bodies, slots_a), b = gather<F>(bodies, slots_b);
+            const Extras extras = extras_of(span.traits[k]);
+            weigh_rows(rows, a.weight, b.weight, extras);
+            detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
+            const bool fixed = span.traits[k] & some_fixed;
+            scatter_velocity(bodies, slots_a, a, fixed);
+            scatter_velocity(bodies, slots_b, b, fixed);
+            rows.lead = F(0);
+            const bool in_flight = any(is_in_flight(rows));
+            span.traits[k] = static_cast<std::uint8_t>((span.traits[k] & ~some_in_flight) |
+                                                       (in_flight ? some_in_flight : 0));
+            span.found[k] = bits_of(both(some_used(rows), !pushes(rows)));
+        }
     }
 
     static void warm_start(const BlockSpan<D>& span, const RecordView<D>& bodies) {
@@ -60,8 +78,7 @@ struct PassesIn {
     static void look_ahead(const BlockSpan<D>& span, const RecordView<D>& bodies, float h) {
         Rows* rows = reinterpret_cast<Rows*>(span.rows);
         for (std::size_t k = 0; k < span.blocks; ++k) {
-            rows[k].lead = F(0);
-            if (!any(is_in_flight(rows[k]))) continue;
+            if (!(span.traits[k] & some_in_flight)) continue;
             const Body<D, F> a = gather<F>(bodies, span.a + k * width),
                              b = gather<F>(bodies, span.b + k * width);
             detail::look_ahead(rows[k], Vec<D, F>(b.motion.v - a.motion.v),
@@ -79,6 +96,18 @@ struct PassesIn {
                        if constexpr (friction)
                            solve_friction(rows, a.motion, b.motion, a.weight, b.weight, extras);
                    });
+    }
+
+    static void find_pushing(const BlockSpan<D>& span) {
+        const Rows* rows = reinterpret_cast<const Rows*>(span.rows);
+        for (std::size_t k = 0; k < span.blocks; ++k) span.found[k] = bits_of(pushes(rows[k]));
+    }
+
+    static void touch(const BlockSpan<D>& span) {
+        const Rows* rows = reinterpret_cast<const Rows*>(span.rows);
+        Marks* marks = reinterpret_cast<Marks*>(span.marks);
+        for (std::size_t k = 0; k < span.blocks; ++k)
+            span.found[k] = bits_of(detail::touch(rows[k], marks[k]));
     }
 
     static void tally(const BlockSpan<D>& span) {
@@ -139,14 +168,17 @@ struct PassesIn {
     }
 
     static constexpr Passes<D> all{width,
-                                   load,
+                                   refresh,
+                                   prepare,
                                    warm_start,
                                    look_ahead,
                                    solve<true, false, false>,
                                    solve<true, false, true>,
                                    solve<true, true, false>,
                                    solve<false, true, false>,
+                                   find_pushing,
                                    tally,
+                                   touch,
                                    begin_warm,
                                    begin,
                                    integrate_velocities,

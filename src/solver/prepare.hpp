@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/marks.hpp"
 #include "solver/rows.hpp"
 
 /// What the rows of a contact need beside what the narrow phase found: effective masses and the patch of
@@ -85,14 +86,30 @@ CAROM_INLINE void look_ahead(ContactRows<D, F>& c, const Vec<D, F>& change, cons
     c.lead = select(is_in_flight(c), maximum(F(0), minimum(outer, steady)), F(0));
 }
 
-/// Are all points that are used open?
+/// Is any point used, and are all that are open?
 template <int D, class F>
 CAROM_INLINE auto is_in_flight(const ContactRows<D, F>& c) {
     constexpr float touching = 1e-5f;  // m: nearer things are not in flight
-    F nearest = F(1);
+    constexpr float far = no_separation;
+    F nearest = F(far);
     for (const NormalRow<D, F>& p : c.points)
-        nearest = minimum(nearest, select(p.mass > F(0), p.separation, F(1)));
-    return nearest > F(touching);
+        nearest = minimum(nearest, select(p.mass > F(0), p.separation, F(far)));
+    return both(nearest > F(touching), F(far) > nearest);
+}
+
+template <int D, class F>
+CAROM_INLINE auto some_used(const ContactRows<D, F>& c) {
+    F most = F(0);
+    for (const NormalRow<D, F>& p : c.points) most = maximum(most, p.mass);
+    return most > F(0);
+}
+
+/// Does any point push?
+template <int D, class F>
+CAROM_INLINE auto pushes(const ContactRows<D, F>& c) {
+    F most = F(0);
+    for (const NormalRow<D, F>& p : c.points) most = maximum(most, p.impulse);
+    return most > F(0);
 }
 
 /// Adds what the rows hold now to the sums over the sub-steps.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "solver/solver.hpp"
@@ -7,13 +8,35 @@
 /// Restitution, once at the end of the step, for the points that were hit.
 namespace carom::detail {
 
+/// Lists the points that may bounce, in the order of the world's contacts.
+template <int D>
+void Solver<D>::note_impacts() {
+    impacts_.clear();
+    for (std::uint32_t number = 0; number < sections_.size(); ++number) {
+        const ContactStore<D>& store = sections_[number].contacts;
+        for (std::uint32_t index = 0; index < store.size(); ++index) {
+            if (!(store.traits(index / store.width()) & some_bouncy)) continue;
+            const float restitution = store.restitution(index);
+            if (restitution == 0) continue;
+            const Rows model;
+            for (std::uint32_t k = 0; k < Rows::capacity; ++k) {
+                if (store.rows().at(index, field_of(model, model.points[k].mass)) > 0)
+                    impacts_.push_back({store.contact(index), number, index, k, restitution, 0, 0});
+            }
+        }
+    }
+    std::ranges::sort(impacts_, [](const Impact& one, const Impact& other) {
+        return std::tie(one.contact, one.point) < std::tie(other.contact, other.point);
+    });
+}
+
 /// Completes `impacts_` by how the points move at the start of the step.
 template <int D>
-void Solver<D>::find_impacts(const SolverInput<D>&) {
+void Solver<D>::find_impacts() {
     for (Impact& i : impacts_) {
-        ContactBlocks<D>& blocks = sections_[i.section].blocks;
-        const Rows rows = blocks.rows().get(i.place);
-        const std::uint32_t a = blocks.a(i.place), b = blocks.b(i.place);
+        const ContactStore<D>& store = sections_[i.section].contacts;
+        const Rows rows = store.rows().get(i.index);
+        const std::uint32_t a = store.a(i.index), b = store.b(i.index);
         const Drive<D, float> drive_a = drives_.get(a), drive_b = drives_.get(b);
         const Vec<D, float>& n = rows.normal;
         // Steady constraints count beside the outer forces (a ball that falls on a box at rest), but what
@@ -36,10 +59,10 @@ void Solver<D>::bounce(const SolverInput<D>& input) {
     for (int pass = 0; pass < passes; ++pass) {
         for (std::size_t k = 0; k < impacts_.size(); ++k) {
             const Impact& i = impacts_[pass % 2 == 0 ? k : impacts_.size() - 1 - k];
-            const LaneStore<Rows>& rows = sections_[i.section].blocks.rows();
+            const LaneStore<Rows>& rows = sections_[i.section].contacts.rows();
             const NormalRow<D, float>& p = model.points[i.point];
-            if (rows.at(i.place, field_of(model, p.total_impulse)) == 0) continue;
-            const float separation = rows.at(i.place, field_of(model, p.separation));
+            if (rows.at(i.index, field_of(model, p.total_impulse)) == 0) continue;
+            const float separation = rows.at(i.index, field_of(model, p.separation));
             const Rebound r = rebound(i.restitution, separation, i.speed, i.acceleration, input.step,
                                       input.restitution_threshold);
             if (r.bounces) bounce(i, r);
@@ -49,10 +72,10 @@ void Solver<D>::bounce(const SolverInput<D>& input) {
 
 template <int D>
 void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
-    ContactBlocks<D>& blocks = sections_[impact.section].blocks;
-    Rows rows = blocks.rows().get(impact.place);
+    ContactStore<D>& store = sections_[impact.section].contacts;
+    Rows rows = store.rows().get(impact.index);
     NormalRow<D, float>& p = rows.points[impact.point];
-    const std::uint32_t slot_a = blocks.a(impact.place), slot_b = blocks.b(impact.place);
+    const std::uint32_t slot_a = store.a(impact.index), slot_b = store.b(impact.index);
     Body<D, float> body_a = gather<float>(view_, &slot_a), body_b = gather<float>(view_, &slot_b);
     Motion<D, float>&a = body_a.motion, &b = body_b.motion;
     const Weight<D, float>&wa = body_a.weight, &wb = body_b.weight;
@@ -73,7 +96,7 @@ void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
         b.moved += shift_b.v;
         b.turned = b.turned + shift_b.w;
     }
-    blocks.rows().set(impact.place, rows);
+    store.rows().set(impact.index, rows);
     for (const auto& [slot, body] : {std::pair{slot_a, body_a}, std::pair{slot_b, body_b}}) {
         if (slot < view_.first_movable) continue;
         scatter_velocity(view_, &slot, body, false);
@@ -81,8 +104,9 @@ void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                      \
-    template void Solver<D>::find_impacts(const SolverInput<D>&); \
+#define CAROM_INSTANTIATE(D)                 \
+    template void Solver<D>::note_impacts(); \
+    template void Solver<D>::find_impacts(); \
     template void Solver<D>::bounce(const SolverInput<D>&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -10,40 +10,47 @@ namespace carom::detail {
 /// A contact that takes more speed than this in a sub-step was hit, and does not just begin to carry.
 constexpr float blow_speed = 0.25f;  // m/s
 
-/// Finds the contacts that have begun to carry an impulse. Are there any?
+/// Finds the contacts to be settled: those that carry their first impulse, and those that were hit in the
+/// sub-step before. Are there any?
 template <int D>
 bool Solver<D>::find_struck() {
-    using Stage = typename Unsettled::Stage;
     bool some = false;
     for (Section& s : sections_) {
         s.struck.clear();
-        const LaneStore<Rows>& rows = s.blocks.rows();
-        for (Unsettled& contact : s.unsettled) {
-            if (contact.stage == Stage::was_hit)
-                contact.stage = Stage::ends;
-            else if (carries_impulse(rows, contact.place))
-                contact.stage = Stage::begins;
-            else
-                continue;
-            s.struck.push_back(contact.place);
-        }
+        s.begun.clear();
+        if (s.contacts.empty()) continue;
+        s.struck.swap(s.hit);
+        passes_of(s).find_pushing(s.contacts.span());
+        each_bit(
+            s, [&](std::size_t block) { return s.waiting[block] & s.contacts.found(block); },
+            [&](std::uint32_t index) { s.begun.push_back(index); });
+        for (std::size_t block = 0; block < s.contacts.blocks(); ++block)
+            s.waiting[block] &= ~s.contacts.found(block);
+        s.struck.insert(s.struck.end(), s.begun.begin(), s.begun.end());
         some |= !s.struck.empty();
     }
     return some;
 }
 
+/// The most that the impulse of any point changes its own speed, m/s.
+template <int D>
+float Solver<D>::speed_taken(const LaneStore<Rows>& rows, std::size_t index) {
+    const Rows model;
+    float most = 0;
+    for (const NormalRow<D, float>& p : model.points) {
+        const float impulse = rows.at(index, field_of(model, p.impulse));
+        if (impulse > 0) most = std::max(most, impulse / rows.at(index, field_of(model, p.mass)));
+    }
+    return most;
+}
+
 /// Of the contacts that began in this sub-step, those that were hit are to be settled once more.
 template <int D>
 void Solver<D>::note_blows() {
-    using Stage = typename Unsettled::Stage;
     for (Section& s : sections_) {
-        std::erase_if(s.unsettled, [&](Unsettled& contact) {
-            if (contact.stage == Stage::waits) return false;
-            const bool hit =
-                contact.stage == Stage::begins && speed_taken(s.blocks.rows(), contact.place) > blow_speed;
-            contact.stage = Stage::was_hit;
-            return !hit;
-        });
+        for (const std::uint32_t index : s.begun) {
+            if (speed_taken(s.contacts.rows(), index) > blow_speed) s.hit.push_back(index);
+        }
     }
 }
 
@@ -51,55 +58,41 @@ void Solver<D>::note_blows() {
 template <int D>
 void Solver<D>::forget_last_blows() {
     for (Section& s : sections_) {
-        for (const Unsettled& contact : s.unsettled) {
-            if (contact.stage != Unsettled::Stage::was_hit) continue;
-            Rows rows = s.blocks.rows().get(contact.place);
+        for (const std::uint32_t index : s.hit) {
+            Rows rows = s.contacts.rows().get(index);
             for (NormalRow<D, float>& p : rows.points) p.impulse = 0;
             rows.friction_impulse = {};
             rows.twist_impulse = 0;
             rows.rolling_impulse = {};
-            s.blocks.rows().set(contact.place, rows);
+            s.contacts.rows().set(index, rows);
         }
     }
 }
 
-/// Copies the struck contacts into blocks of their own, those of a colour side by side.
 template <int D>
 void Solver<D>::copy_struck(Section& s) {
-    s.settling.clear(s.blocks.passes());
-    s.sources.clear();
-    for (std::size_t first = 0; first < s.struck.size();) {
-        const auto colour_end =
-            std::upper_bound(s.colour_starts.begin(), s.colour_starts.end(), s.struck[first]);
-        std::size_t last = first + 1;
-        while (s.settling.width() > 1 && last < s.struck.size() &&
-               (colour_end == s.colour_starts.end() || s.struck[last] < *colour_end))
-            ++last;
-        s.settling.append(last - first);
-        s.sources.insert(s.sources.end(), s.struck.begin() + first, s.struck.begin() + last);
-        s.sources.resize(s.settling.places(), none);
-        first = last;
-    }
-    for (std::size_t place = 0; place < s.sources.size(); ++place) {
-        const std::uint32_t from = s.sources[place];
+    s.settling.clear(s.contacts.passes());
+    if (s.struck.empty()) return;
+    s.settling.append(s.struck.size());
+    for (std::size_t place = 0; place < s.settling.places(); ++place) {
         std::uint8_t& traits = s.settling.traits(place / s.settling.width());
-        if (from == none) {
+        if (place >= s.struck.size()) {
             s.settling.rows().set(place, {});
             traits |= some_fixed;
             continue;
         }
-        s.settling.rows().set(place, s.blocks.rows().get(from));
-        s.settling.a(place) = s.blocks.a(from);
-        s.settling.b(place) = s.blocks.b(from);
-        traits |= s.blocks.traits(from / s.blocks.width());
+        const std::uint32_t from = s.struck[place];
+        s.settling.rows().set(place, s.contacts.rows().get(from));
+        s.settling.a(place) = s.contacts.a(from);
+        s.settling.b(place) = s.contacts.b(from);
+        traits |= s.contacts.traits(from / s.contacts.width());
     }
 }
 
 template <int D>
 void Solver<D>::return_struck(Section& s) {
-    for (std::size_t place = 0; place < s.sources.size(); ++place) {
-        if (s.sources[place] != none) s.blocks.rows().set(s.sources[place], s.settling.rows().get(place));
-    }
+    for (std::size_t place = 0; place < s.struck.size(); ++place)
+        s.contacts.rows().set(s.struck[place], s.settling.rows().get(place));
 }
 
 template <int D>
@@ -121,7 +114,7 @@ template <int D>
 void Solver<D>::mark_struck_bodies() {
     for (const std::uint32_t slot : struck_slots_) is_struck_[slot] = 0;
     struck_slots_.clear();
-    is_struck_.resize(std::max(is_struck_.size(), bodies_.size()), 0);
+    is_struck_.resize(std::max<std::size_t>(is_struck_.size(), slots_.size()), 0);
     const auto mark = [&](std::uint32_t slot) {
         if (slot < view_.first_movable || is_struck_[slot]) return;
         is_struck_[slot] = 1;
@@ -129,8 +122,8 @@ void Solver<D>::mark_struck_bodies() {
     };
     for (Section& s : sections_) {
         for (const std::uint32_t place : s.struck) {
-            mark(s.blocks.a(place));
-            mark(s.blocks.b(place));
+            mark(s.contacts.a(place));
+            mark(s.contacts.b(place));
         }
     }
 }
@@ -149,20 +142,20 @@ void Solver<D>::sum_struck() {
     if (!sums_begun_) {
         sums_ = records_;
         sums.records = sums_.data();
-        for (std::uint32_t slot = 1; slot < bodies_.size(); ++slot) clear(slot);
+        for (std::uint32_t slot = 1; slot < slots_.size(); ++slot) clear(slot);
         sums_begun_ = true;
     }
     sums.records = sums_.data();
     wanted_.clear();
     for (Section& s : sections_) {
-        for (std::size_t block = 0; block < s.blocks.blocks(); ++block) {
-            const BlockSpan<D> one = s.blocks.span(block, 1);
+        for (std::size_t block = 0; block < s.contacts.blocks(); ++block) {
+            const BlockSpan<D> one = s.contacts.span(block, 1);
             bool wanted = false;
-            for (std::size_t lane = 0; lane < s.blocks.width(); ++lane)
+            for (std::size_t lane = 0; lane < s.contacts.width(); ++lane)
                 wanted |= is_struck_[one.a[lane]] || is_struck_[one.b[lane]];
             if (!wanted) continue;
-            s.blocks.passes().warm_start(one, sums);
-            wanted_.push_back({one, s.blocks.width()});
+            passes_of(s).warm_start(one, sums);
+            wanted_.push_back({one, s.contacts.width()});
         }
     }
     for (const std::uint32_t slot : struck_slots_) {

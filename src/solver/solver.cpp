@@ -32,44 +32,90 @@ void Solver<D>::set_lengths(const SolverInput<D>& input) {
             softness(2 * hertz, contact_damping_ratio, h)};
 }
 
-/// `pass(section, blocks, passes)` for the blocks of each section that has some.
 template <int D>
-template <class Pass>
-void Solver<D>::each_section(Pass&& pass) {
-    for (Section& section : sections_) {
-        if (!section.blocks.empty()) pass(section.blocks.span(), section.blocks.passes());
-    }
+Solver<D>::Solver() : passes_(&passes_of_width<D>(lane_width())) {
+    for (int colour = 0; colour < Colours::count; ++colour) sections_[colour].contacts.set_passes(*passes_);
+    sections_[Colours::overflow].contacts.set_passes(passes_of_width<D>(1));
+    drives_.set_width(passes_->width);
+    view_.first_movable = slots_.first_movable();
+}
+
+template <int D>
+void Solver<D>::add(std::uint32_t contact, ContactRecord<D>& c, const ContactCache<D>* cache) {
+    const BodyPair bodies{slots_.slot(c.body_a), slots_.slot(c.body_b), c.body_a, c.body_b};
+    const int colour =
+        colours_.take({bodies.slot_a, bodies.slot_b, pair_key(c.body_a, c.body_b)}, view_.first_movable);
+    c.place.colour = static_cast<std::uint8_t>(colour);
+    c.place.index = sections_[colour].contacts.push(contact, bodies, view_.first_movable);
+    ++count_;
+    ++touching_[bodies.slot_a];
+    ++touching_[bodies.slot_b];
+    write(c, cache);
+}
+
+template <int D>
+void Solver<D>::write(const ContactRecord<D>& c, const ContactCache<D>* cache) {
+    sections_[c.place.colour].contacts.write(c.place.index, c, cache);
+}
+
+template <int D>
+void Solver<D>::read(const ContactCache<D>& cache, ContactRecord<D>& c) const {
+    sections_[c.place.colour].contacts.read(c.place.index, cache, c);
+}
+
+template <int D>
+bool Solver<D>::is_carried(const ContactRecord<D>& c) const {
+    return sections_[c.place.colour].contacts.is_carried(c.place.index);
+}
+
+template <int D>
+std::uint32_t Solver<D>::remove(ContactRecord<D>& c) {
+    ContactStore<D>& store = sections_[c.place.colour].contacts;
+    const SlotPair pair{store.a(c.place.index), store.b(c.place.index), 0};
+    colours_.give_back(pair, c.place.colour, view_.first_movable);
+    --touching_[pair.a];
+    --touching_[pair.b];
+    --count_;
+    const std::uint32_t moved = store.remove(c.place.index, view_.first_movable);
+    c.place.colour = ContactPlace::nowhere;
+    return moved;
+}
+
+template <int D>
+void Solver<D>::rename(const ContactRecord<D>& c, std::uint32_t contact) {
+    sections_[c.place.colour].contacts.rename(c.place.index, contact);
 }
 
 template <int D>
 void Solver<D>::run(const SolverInput<D>& input) {
-    if (input.active.empty()) return;
+    if (count_ == 0) return;
     set_lengths(input);
-    passes_ = &passes_of_width<D>(lane_width());
-    gather_bodies(input);
-    deal_contacts(input);  // and apply the impulses that they have kept
+    load_bodies(input);
+    prepare_contacts();  // and apply the impulses that they have kept
 
     sums_begun_ = false;
     passes_->begin_warm(body_span(), h_);
-    each_section([&](auto span, auto& passes) { passes.look_ahead(span, view_, h_); });
+    each_section([&](Section& s) { passes_of(s).look_ahead(s.contacts.span(), view_, h_); });
     passes_->begin(body_span(), h_);
-    find_impacts(input);
+    note_impacts();
+    find_impacts();
     step_through(input.substeps);
     bounce(input);
-    store(input);
+    store_bodies(input);
 }
 
 template <int D>
 void Solver<D>::step_through(int substeps) {
     passes_->integrate_velocities(body_span(), h_);
     for (int i = 0; i < substeps; ++i) {
-        each_section([&](auto span, auto& passes) {
-            (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
+        each_section([&](Section& s) {
+            const Passes<D>& passes = passes_of(s);
+            (i == 0 ? passes.solve : passes.solve_and_tally)(s.contacts.span(), view_, sub_);
         });
         const bool some_struck = find_struck();
         if (some_struck) settle_struck<true>();
         passes_->integrate_positions(body_span(), h_);
-        each_section([&](auto span, auto& passes) { passes.relax(span, view_, sub_); });
+        each_section([&](Section& s) { passes_of(s).relax(s.contacts.span(), view_, sub_); });
         if (some_struck) {
             settle_struck<false>();
             sum_struck();
@@ -78,11 +124,11 @@ void Solver<D>::step_through(int substeps) {
         const bool last = i + 1 == substeps;
         (last ? passes_->finish : passes_->finish_and_integrate_velocities)(body_span(), h_);
     }
-    each_section([&](auto span, auto& passes) { passes.tally(span); });
+    each_section([&](Section& s) { passes_of(s).tally(s.contacts.span()); });
     forget_last_blows();
 }
 
-template void Solver<2>::run(const SolverInput<2>&);
-template void Solver<3>::run(const SolverInput<3>&);
+template class Solver<2>;
+template class Solver<3>;
 
 }  // namespace carom::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -10,9 +11,10 @@
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
 #include "solver/blocks.hpp"
+#include "solver/body_slots.hpp"
 #include "solver/bounce.hpp"
 #include "solver/colours.hpp"
-#include "solver/lane_store.hpp"
+#include "solver/contact_store.hpp"
 #include "solver/passes.hpp"
 
 namespace carom::detail {
@@ -22,73 +24,136 @@ template <int D>
 struct SolverInput {
     std::span<BodyState<D>> states;  ///< of all bodies; those in contact are moved on
     std::span<const BodyMass<D>> masses;
-    std::span<const BodyType> types;
-    std::span<const std::uint8_t>
-        moving;                      ///< awake dynamic bodies and moving kinematic ones; others stand still
     std::span<const Load<D>> loads;  ///< at the start of the step
-    std::span<ContactRecord<D>> contacts;   ///< all; impulses are read and written
-    std::span<const std::uint32_t> active;  ///< indices of the contacts that carry points
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
 };
 
-/// Moves the bodies that are in contact through one step. An object of it keeps its buffers from step to
-/// step, so that a steady step allocates nothing; it holds no state that matters to the result.
+/// Moves the bodies that are in contact through one step. It keeps the contacts from step to step, in lanes
+/// and by colour: what does not change is neither loaded nor stored.
 template <int D>
 class Solver {
   public:
+    Solver();
+
+    // Bodies. -------------------------------------------------------------------------------------------
+
+    /// Follows which bodies move: the awake dynamic and the moving kinematic ones. Returns whether any began
+    /// or ceased to. Calls `let_go(contact)` for each contact of such a body; it has to be removed, and may
+    /// be added again afterwards.
+    template <class LetGo>
+    bool follow(std::span<const std::uint32_t> awake, std::span<const BodyType> types, LetGo&& let_go) {
+        if (!slots_.follow(awake, types)) return false;
+        for (Section& s : sections_) {
+            for (std::size_t i = s.contacts.size(); i-- > 0;) {
+                if (slots_.changed(s.contacts.body_a(i)) || slots_.changed(s.contacts.body_b(i)))
+                    let_go(s.contacts.contact(i));
+            }
+        }
+        view_.first_movable = slots_.first_movable();
+        touching_.resize(slots_.size(), 0);
+        return true;
+    }
+    /// Did `follow` find that this body began or ceased to move when it was last called?
+    bool changed(std::uint32_t body) const { return slots_.changed(body); }
+    /// Has the body a contact here?
+    bool has_contact(std::uint32_t body) const { return touching_[slots_.slot(body)] > 0; }
+
+    // Contacts, by their number in the world. -----------------------------------------------------------
+
+    std::size_t contacts() const { return count_; }
+    /// Takes up a contact of which a body can be pushed. With `cache`, `refresh` carries it along from then
+    /// on; without, it is to be written before each step.
+    void add(std::uint32_t contact, ContactRecord<D>& record, const ContactCache<D>* cache);
+    void write(const ContactRecord<D>& record, const ContactCache<D>* cache);
+    /// Completes the record by what the solver knows. `cache` is what it was last written with.
+    void read(const ContactCache<D>& cache, ContactRecord<D>& record) const;
+    bool is_carried(const ContactRecord<D>& record) const;
+    /// Returns the contact whose place is now that of the removed one, or `none`.
+    std::uint32_t remove(ContactRecord<D>& record);
+    /// The contact has another number now.
+    void rename(const ContactRecord<D>& record, std::uint32_t contact);
+
+    /// Carries the contacts along with their bodies. Calls `look(contact)` for each that has to be looked at:
+    /// its manifold is no longer good, or it is not carried along.
+    template <class Look>
+    void refresh(std::span<const BodyState<D>> states, float reach, Look&& look) {
+        const PoseView<D> poses{reinterpret_cast<const double*>(states.data())};
+        each_section([&](Section& s) {
+            passes_of(s).refresh(s.contacts.span(), poses, reach, static_cast<float>(reuse_turn));
+            each_found(s, look);
+        });
+    }
+
     void run(const SolverInput<D>& input);
+
+    /// Calls `changed(contact)` for each contact that has begun or ended to touch.
+    template <class Changed>
+    void report(Changed&& changed) {
+        each_section([&](Section& s) {
+            passes_of(s).touch(s.contacts.span());
+            each_found(s, changed);
+        });
+    }
+
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
 
   private:
     using Rows = ContactRows<D, float>;
-    static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    /// A contact that carried no impulse when the step began. It is settled in the sub-step in which it first
-    /// does, and in the next as well if that was a blow, as then its impulse is not needed any more.
-    struct Unsettled {
-        enum class Stage : std::uint8_t { waits, begins, was_hit, ends };
-        std::uint32_t place;
-        Stage stage = Stage::waits;
-    };
-    /// Contacts that are solved with one lane width: all that have a colour in the widest lanes, and the
-    /// overflow of the colouring one by one.
+    /// The contacts of one colour; those of the overflow are solved one by one.
     struct Section {
-        ContactBlocks<D> blocks;
-        std::vector<std::uint32_t> contacts;       ///< by place: which of the active ones, or `none`
-        std::vector<std::uint32_t> colour_starts;  ///< places
-        std::vector<Unsettled> unsettled;          ///< contacts that have just begun, or are yet to
-        std::vector<std::uint32_t> struck;         ///< places of those that carry an impulse in this sub-step
-        ContactBlocks<D> settling;                 ///< copies of the struck ones, close together
-        std::vector<std::uint32_t> sources;  ///< by place in `settling`: where the copy is from, or `none`
+        ContactStore<D> contacts;
+        std::vector<std::uint32_t> waiting;  ///< by block, a bit a lane: those without an impulse so far
+        std::vector<std::uint32_t> begun;    ///< those that got their first impulse in this sub-step
+        std::vector<std::uint32_t> hit;      ///< those for which that was a blow, in the sub-step before
+        std::vector<std::uint32_t> struck;   ///< both: to be settled in this sub-step
+        ContactBlocks<D> settling;           ///< copies of the struck ones, close together
     };
     /// A point that may bounce, as it was at the start of the step.
     struct Impact {
-        std::uint32_t section, place, point;
+        std::uint32_t contact;
+        std::uint32_t section, index, point;
         float restitution;
         float speed;         ///< of separation, m/s
         float acceleration;  ///< of separation, by outer forces and steady constraints, m/s²
     };
 
     // solver.cpp
+    const Passes<D>& passes_of(const Section& section) const { return section.contacts.passes(); }
     void set_lengths(const SolverInput<D>& input);
-    template <class Pass>
-    void each_section(Pass&& pass);
     void step_through(int substeps);
+    template <class Visit>
+    void each_section(Visit&& visit) {
+        for (Section& section : sections_) {
+            if (!section.contacts.empty()) visit(section);
+        }
+    }
+    /// `visit(contact)` for what the last pass found.
+    template <class Visit>
+    static void each_found(const Section& s, Visit&& visit) {
+        each_bit(
+            s, [&](std::size_t block) { return s.contacts.found(block); },
+            [&](std::uint32_t index) {
+                if (index < s.contacts.size()) visit(s.contacts.contact(index));
+            });
+    }
+    /// `visit(index)` for each bit that is set in `bits(block)`.
+    template <class Bits, class Visit>
+    static void each_bit(const Section& s, Bits&& bits, Visit&& visit) {
+        for (std::size_t block = 0; block < s.contacts.blocks(); ++block) {
+            for (std::uint32_t left = bits(block); left != 0; left &= left - 1)
+                visit(static_cast<std::uint32_t>(block * s.contacts.width()) +
+                      static_cast<std::uint32_t>(std::countr_zero(left)));
+        }
+    }
 
-    // load.cpp: from the world's records to lanes.
-    void gather_bodies(const SolverInput<D>& input);
-    void find_slots(const SolverInput<D>& input);
+    // load.cpp: bodies and contacts made ready for a step, and the bodies' states after it.
+    void load_bodies(const SolverInput<D>& input);
     void load_body(const SolverInput<D>& input, std::uint32_t slot);
-    void deal_contacts(const SolverInput<D>& input);
-    void fill_section(const SolverInput<D>& input, Section& section);
-    void fill_block(const SolverInput<D>& input, Section& section, std::size_t block);
-    static void prefetch_record(const SolverInput<D>& input, const Section& section, std::size_t place);
-    void note_impacts(const Section& section, std::size_t place, const ContactRecord<D>& record);
-    static bool carries_impulse(const LaneStore<Rows>& rows, std::size_t place);
-    static float speed_taken(const LaneStore<Rows>& rows, std::size_t place);
-    void store(const SolverInput<D>& input);
-    void store_contact(const Section& section, std::size_t place, ContactRecord<D>& record) const;
+    void prepare_contacts();
+    void store_bodies(const SolverInput<D>& input) const;
 
     // settle.cpp: contacts that begin.
     bool find_struck();
@@ -100,27 +165,29 @@ class Solver {
     void settle_struck();
     void sum_struck();
     void mark_struck_bodies();
+    static float speed_taken(const LaneStore<Rows>& rows, std::size_t index);
 
     // restitution.cpp
-    void find_impacts(const SolverInput<D>& input);
+    void note_impacts();
+    void find_impacts();
     void bounce(const SolverInput<D>& input);
     void bounce(const Impact& impact, const Rebound& rebound);
 
-    BodySpan<D> body_span() { return {view_, drives_.data(), drives_.blocks_for(bodies_.size())}; }
+    BodySpan<D> body_span() { return {view_, drives_.data(), drives_.blocks_for(slots_.size())}; }
 
     float h_ = 0;  ///< length of a sub-step
     SubStep<float> sub_{};
-    const Passes<D>* passes_ = nullptr;  ///< of the widest lanes
+    const Passes<D>* passes_;  ///< of the widest lanes
 
-    std::vector<std::uint32_t> slot_of_;  ///< by body index; 0: none
-    std::vector<std::uint32_t> bodies_;   ///< body index by slot; slot 0 stands for all that stands still
+    BodySlots slots_;
+    std::vector<std::uint32_t> touching_ = std::vector<std::uint32_t>(8, 0);  ///< by slot: how many contacts
     RecordView<D> view_;
     std::vector<float> records_, free_axes_;
     LaneStore<Drive<D, float>> drives_;  ///< by slot
 
-    std::vector<SlotPair> pairs_;  ///< by active contact
+    std::size_t count_ = 0;  ///< of contacts
     Colours colours_;
-    std::array<Section, 2> sections_;
+    std::array<Section, Colours::count + 1> sections_;
     std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
     bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`
     std::vector<std::uint8_t> is_struck_;      ///< by slot: has it a contact that is struck?

@@ -46,7 +46,7 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.place.emplace_back();
         w.loads.emplace_back();
         w.varies.emplace_back();
-        w.touched.emplace_back();
+        w.fixed_contacts_of.push_back(0);
     }
     w.states[i] = {};
     w.masses[i] = {};
@@ -102,6 +102,7 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     BodyInfo<D>& info = w.infos[i];
     info.can_sleep = definition.can_sleep;
     info.bullet = definition.bullet;
+    w.bullets += definition.bullet;
     info.definition = definition;
     info.definition.shapes.clear();
     BodyMass<D>& m = w.masses[i];
@@ -118,7 +119,6 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
         w.movable.push_back(i);
         w.roused.push_back(i);
     }
-    w.bullets += definition.bullet;
     for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
     const auto id = w.body_slots.template id<BodyId<D>>(i);
     w.body_ids.push_back(id);

@@ -11,6 +11,9 @@ namespace carom::detail {
 
 namespace {
 
+/// A core that comes no further than this share of its radius is not looked at.
+constexpr double seen_share = 0.25;
+
 /// Where a body will be after `time` seconds if only gravity acts on it.
 template <int D>
 BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity, double time) {
@@ -104,6 +107,41 @@ std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>
 
 }  // namespace
 
+namespace {
+
+/// May the core of a shape of the body have come so far that it passed through something?
+template <int D>
+bool came_far(const BodyState<D>& before, const BodyState<D>& now, const BodyMass<D>& mass) {
+    double chord;  // of the way of a point at distance 1
+    if constexpr (D == 2) {
+        chord = length(Vec<2>{now.rotation.c - before.rotation.c, now.rotation.s - before.rotation.s});
+    } else {
+        const Rotation<3>&q = now.rotation, &p = before.rotation;
+        const double cosine = q.x * p.x + q.y * p.y + q.z * p.z + q.w * p.w;
+        chord = 2 * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    }
+    return length(now.position - before.position) + chord * mass.radius > seen_share * mass.core_radius;
+}
+
+}  // namespace
+
+/// The contacts with fixed shapes of all bodies that came far in this step, in the order of bodies and
+/// shapes.
+template <int D>
+void WorldState<D>::list_fast_contacts() {
+    fast.clear();
+    for (std::size_t k = 0; k < awake.size(); ++k) {
+        const std::uint32_t i = awake[k];
+        if (moving[i] == moves_freely && came_far(before[k], states[i], masses[i])) fast.push_back(i);
+    }
+    std::ranges::sort(fast);
+    fixed_contacts.clear();
+    if (fast.empty()) return;
+    for (const std::uint32_t body : fast)
+        each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
+    sort_fixed_contacts();
+}
+
 /// The solver keeps to the points where bodies first meet; what a body does after that within the step, as it
 /// spins off from there, it does unseen. So where the core of a fast body would have passed through a fixed
 /// shape, or that of a bullet through anything, the body is stopped where it met that. Its velocity stays,
@@ -117,6 +155,7 @@ void WorldState<D>::stop_at_obstacles() {
         const Vec<D> way = states[body].position - before[place[body]].position;
         return c.passing || dot(way, rotate(axes_of(shape), *shapes[shape].definition.one_way)) >= 0;
     };
+    list_fast_contacts();
     for (const FixedContact& f : fixed_contacts) {
         const ContactRecord<D>& c = contacts[f.contact];
         if (!lets_pass(c, f.body, f.other)) stop_at(f.body, f.shape, f.other, c.facet);
@@ -157,7 +196,7 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     // How far the core came as seen from the obstacle.
     const Vec<D> seen_first = apply_inverse(frame(earlier(other_body), masses[other_body]), first);
     const Vec<D> seen_last = apply_inverse(frame_of(other_body), last);
-    if (length(seen_last - seen_first) <= 0.25 * own.core.radius) return;
+    if (length(seen_last - seen_first) <= seen_share * own.core.radius) return;
 
     const StepMotion<D> sweep(start, states[body]);
     const Obstacle<D> obstacle{shapes[other].shape, facet,

@@ -7,13 +7,7 @@
 
 namespace carom::detail {
 
-namespace {
-
-/// Shapes that touched go on touching until the gap is larger than this, so that what trembles at rest does
-/// not report an end and a beginning every other step.
-constexpr float parting_distance = 0.002f;  // m
-
-}  // namespace
+namespace {}  // namespace
 
 template <int D>
 ShapePair<D> WorldState<D>::names(std::uint32_t shape_a, std::uint32_t shape_b) const {
@@ -22,24 +16,30 @@ ShapePair<D> WorldState<D>::names(std::uint32_t shape_a, std::uint32_t shape_b) 
             shape_slots.template id<ShapeId<D>>(shape_a), shape_slots.template id<ShapeId<D>>(shape_b)};
 }
 
-/// A contact begins when it carries an impulse or overlaps, and ends when it has done neither and its gap is
-/// wide. Contacts of bodies that stand still stay as they are.
+/// The contacts that began or ended to touch, in their order. Contacts of bodies that stand still stay as
+/// they are.
 template <int D>
 void WorldState<D>::report_contacts() {
     events.clear();
     std::swap(events.contact_ends, dropped_contacts);
-    for (ContactRecord<D>& c : contacts) {
-        if (!any_moves(c.body_a, c.body_b)) continue;
-        bool held = false, near = false;
-        for (int i = 0; i < c.count; ++i) {
-            held |= c.points[i].total_impulse > 0 || c.points[i].separation <= 0;
-            near |= c.points[i].separation <= parting_distance;
-        }
-        if (c.merged) held = near = c.nearest <= parting_distance;
-        const bool was_touching = c.touching;
-        c.touching = held || (was_touching && near);
-        if (c.touching == was_touching || c.facet != no_part) continue;
-        if (c.touching)
+    touch_changes.clear();
+    solver.report([&](std::uint32_t i) {
+        solver.read(caches[i], contacts[i]);
+        touch_changes.push_back(i);
+    });
+    for (const std::uint32_t i : loose) {
+        if (i == ContactRecord<D>::nowhere || contacts[i].place) continue;
+        ContactRecord<D>& c = contacts[i];
+        const bool touches = c.merged && c.nearest <= parting_distance;
+        if (touches != c.touching) touch_changes.push_back(i);
+        c.touching = touches;
+    }
+    std::ranges::sort(touch_changes);
+    for (const std::uint32_t i : touch_changes) {
+        const ContactRecord<D>& c = contacts[i];
+        if (c.facet != no_part)
+            terrain_changes.push_back(names(c.shape_a, c.shape_b));
+        else if (c.touching)
             report_begin(c);
         else
             events.contact_ends.push_back({names(c.shape_a, c.shape_b)});
@@ -50,34 +50,37 @@ void WorldState<D>::report_contacts() {
 /// A shape touches a terrain as long as it touches any of its facets.
 template <int D>
 void WorldState<D>::report_terrain() {
-    std::swap(terrain_before, terrain_touched);
-    terrain_touched.clear();
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        const ContactRecord<D>& c = contacts[i];
-        if (c.touching && c.facet != no_part) terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
-    }
-    const auto by_shapes = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
-        const auto key = [](const TerrainTouch<D>& t) {
-            return std::tuple(t.pair.shape_a.index, t.pair.shape_a.generation, t.pair.shape_b.index,
-                              t.pair.shape_b.generation);
-        };
-        return key(one) < key(other);
+    const auto key = [](const ShapePair<D>& pair) {
+        return std::tuple(pair.shape_a.index, pair.shape_a.generation, pair.shape_b.index,
+                          pair.shape_b.generation);
     };
-    std::ranges::stable_sort(terrain_touched, by_shapes);
-    const auto same = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
-        return one.pair == other.pair;
-    };
-    terrain_touched.erase(std::unique(terrain_touched.begin(), terrain_touched.end(), same),
-                          terrain_touched.end());
-    const auto missing_in = [&](const std::vector<TerrainTouch<D>>& list, const TerrainTouch<D>& touch) {
-        return !std::ranges::binary_search(list, touch, by_shapes);
-    };
-    for (const TerrainTouch<D>& touch : terrain_touched) {
-        if (missing_in(terrain_before, touch)) report_begin(contacts[touch.contact]);
+    std::ranges::sort(terrain_changes, {}, key);
+    terrain_changes.erase(std::unique(terrain_changes.begin(), terrain_changes.end()), terrain_changes.end());
+    for (const ShapePair<D>& pair : terrain_changes) {
+        const std::uint32_t touch = first_touching_facet(pair);
+        const PairKey shapes_of_it = PairKey::of(pair.shape_a.index, pair.shape_b.index);
+        const bool touches = touch != ContactRecord<D>::nowhere;
+        if (touches && terrain_touched.insert(shapes_of_it)) report_begin(current(touch));
+        if (!touches && terrain_touched.contains(shapes_of_it)) {
+            terrain_touched.erase(shapes_of_it);
+            events.contact_ends.push_back({pair});
+        }
     }
-    for (const TerrainTouch<D>& touch : terrain_before) {
-        if (missing_in(terrain_touched, touch)) events.contact_ends.push_back({touch.pair});
-    }
+    terrain_changes.clear();
+}
+
+/// The first of the contacts in which the two shapes touch, or `nowhere`.
+template <int D>
+std::uint32_t WorldState<D>::first_touching_facet(const ShapePair<D>& pair) const {
+    std::uint32_t first = ContactRecord<D>::nowhere;
+    if (!shape_slots.contains(pair.shape_a) || !shape_slots.contains(pair.shape_b)) return first;
+    const bool a_ground = shapes[pair.shape_a.index].shape.kind == ShapeKind::terrain;
+    const std::uint32_t ground = a_ground ? pair.shape_a.index : pair.shape_b.index;
+    each_contact_of_shape(a_ground ? pair.shape_b.index : pair.shape_a.index, [&](std::uint32_t contact) {
+        const ContactRecord<D>& c = contacts[contact];
+        if (c.touching && (c.shape_a == ground || c.shape_b == ground)) first = std::min(first, contact);
+    });
+    return first;
 }
 
 /// The work that a contact did on the two bodies is, of each of its impulses, the impulse times the mean of

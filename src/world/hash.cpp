@@ -131,7 +131,8 @@ struct Folder {
     template <int D>
     void operator()(const ContactRecord<D>& c) {
         all(c.shape_a, c.shape_b, c.facet, c.count, c.friction_impulse, c.spin_impulse, c.twist_impulse,
-            c.touching, c.passing, c.merged);
+            c.touching, c.passing, c.merged, c.place.colour);
+        if (c.place.colour == Colours::overflow) all(c.place.index);
         for (int i = 0; i < c.count; ++i) all(c.points[i].impulse, c.points[i].feature, c.points[i].arm_a);
     }
     template <int D>
@@ -169,7 +170,8 @@ std::uint64_t World<D>::hash() const {
     w.forces.each([&](const ForceDefinition<D>& force, bool fired) {
         fold.all(force.kind, force.from, force.to, fired);
     });
-    fold.all(w.contacts, w.caches, w.sensor_pairs);
+    for (std::uint32_t i = 0; i < w.contacts.size(); ++i) fold(w.current(i));
+    fold.all(w.caches, w.sensor_pairs);
     return fold.hash.value();
 }
 

@@ -98,7 +98,9 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     m.inverse_inertia = dynamic && p.inertia != Inertia<D>{} ? inverse(p.inertia) : Inertia<D>{};
     m.isotropic = is_isotropic(p.inertia);
     m.radius = 0;
+    m.core_radius = info.shapes.empty() ? 0 : shapes[info.shapes[0].index].core.radius;
     for (const ShapeId<D>& id : info.shapes) {
+        m.core_radius = std::min(m.core_radius, shapes[id.index].core.radius);
         if (shapes[id.index].shape.kind == ShapeKind::plane) continue;
         const Aabb<D> box = bounds(shapes[id.index].shape, Transform<D>{});
         Vec<D> far;

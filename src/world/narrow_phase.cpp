@@ -92,7 +92,10 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         if ((round && cache.count > 0) || !definition.continuous) cache.forget();
     }
     set_points(cache, sa, sb, reach, c);
-    if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) meet_ahead(c, dt);
+    if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) {
+        meet_ahead(c, dt);
+        if (c.count > 0) cache.forget();  // these points are of another time
+    }
     if (c.special) {
         pass_one_way(c, old.count > 0 || old.passing);
         drag_along(c);
@@ -104,8 +107,11 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
 
 template <int D>
 void WorldState<D>::collide(double dt) {
-    list_fixed_contacts();
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
+    list_patches();
+    solver.refresh(states, static_cast<float>(speculative_distance), [&](std::uint32_t i) {
+        if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
+    });
+    for (const std::uint32_t i : loose) {
         ContactRecord<D>& c = contacts[i];
         if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[i], dt);
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/remove_each.hpp"
 #include "geometry/terrain.hpp"
 #include "world/state.hpp"
 
@@ -35,23 +36,6 @@ Aabb<D> box_in(const Transform<D>& frame, const Aabb<D>& box) {
         for (int k = 0; k < D; ++k) reach[k] += std::fabs(turned[k]);
     }
     return {center - reach, center + reach};
-}
-
-/// Removes the picked ones of `items` by `remove(index)`, which moves the last into the gap; so the order of
-/// what stays depends on nothing but what goes.
-template <class Item, class Remove>
-void remove_each(std::vector<std::uint32_t>& picked, const std::vector<Item>& items, const Remove& remove) {
-    std::ranges::sort(picked);
-    picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
-    std::size_t left = 0, right = picked.size();
-    while (left < right) {
-        const std::size_t last = items.size() - 1;
-        remove(picked[left]);
-        // Where the last is picked as well, it goes from the gap that it has come to.
-        const bool again = right > left + 1 && picked[right - 1] == last;
-        again ? --right : ++left;
-    }
-    picked.clear();
 }
 
 }  // namespace
@@ -153,6 +137,7 @@ void WorldState<D>::find_pairs() {
 
     std::sort(new_pairs.begin(), new_pairs.end());
     new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
+    regrouped.clear();
     for (const PairKey& key : new_pairs) {
         pairs.insert(key);
         const bool a_senses = shapes[key.a].definition.sensor, b_senses = shapes[key.b].definition.sensor;
@@ -164,15 +149,7 @@ void WorldState<D>::find_pairs() {
         sensor_pairs.push_back(a_senses ? SensorPair{key.a, key.b} : SensorPair{key.b, key.a});
         placed_anew.push_back(key.a);
     }
-}
-
-template <int D>
-void WorldState<D>::add_contact(const PairKey& key) {
-    const ContactRecord<D> contact = new_contact(key);
-    contact_links.add(static_cast<std::uint32_t>(contacts.size()), contact_list(key.a, contact.on_fixed),
-                      contact_list(key.b, contact.on_fixed));
-    contacts.push_back(contact);
-    caches.emplace_back();
+    part_from_others();
 }
 
 /// Does a shape meet the facets of a terrain here? Sensors care for the whole.
@@ -192,19 +169,6 @@ void WorldState<D>::find_facets(std::uint32_t shape_a, std::uint32_t shape_b) {
         const PairKey key = PairKey::of(shape_a, shape_b, facet);
         if (!pairs.contains(key)) new_pairs.push_back(key);
     });
-}
-
-template <int D>
-ContactRecord<D> WorldState<D>::new_contact(const PairKey& key) const {
-    ContactRecord<D> c;
-    c.shape_a = key.a;
-    c.shape_b = key.b;
-    c.facet = key.part;
-    c.body_a = shapes[key.a].body;
-    c.body_b = shapes[key.b].body;
-    c.on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
-    set_surface(c);
-    return c;
 }
 
 /// What the materials of the two shapes make of their contact.
@@ -262,41 +226,6 @@ bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
 }
 
 template <int D>
-void WorldState<D>::remove_contact(std::size_t contact) {
-    const ContactRecord<D>& c = contacts[contact];
-    pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
-    if (c.touching && c.facet == no_part) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
-    const std::size_t last = contacts.size() - 1;
-    contact_links.remove(static_cast<std::uint32_t>(contact));
-    if (contact != last) {
-        contacts[contact] = contacts[last];
-        caches[contact] = caches[last];
-        contact_links.renumber(static_cast<std::uint32_t>(last), static_cast<std::uint32_t>(contact));
-    }
-    contacts.pop_back();
-    caches.pop_back();
-}
-
-template <int D>
-void WorldState<D>::remove_picked_contacts() {
-    remove_each(picked, contacts, [&](std::uint32_t contact) { remove_contact(contact); });
-}
-
-/// The shapes of the body, or its centre of mass, changed.
-template <int D>
-void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
-    for (const ShapeId<D>& id : infos[body].shapes) {
-        each_contact_of_shape(id.index, [&](std::uint32_t contact) { caches[contact].forget(); });
-    }
-}
-
-template <int D>
-void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
-    each_contact_of_shape(shape, [&](std::uint32_t contact) { picked.push_back(contact); });
-    remove_picked_contacts();
-}
-
-template <int D>
 void WorldState<D>::place_visits_anew(std::uint32_t shape) {
     placed_anew.push_back(shape);
     sensor_links.each(shape, [&](std::uint32_t pair) { sensor_pairs[pair].placed_anew = true; });
@@ -327,13 +256,6 @@ void WorldState<D>::remove_visits_of(std::uint32_t shape) {
     remove_picked_visits();
 }
 
-template <int D>
-void WorldState<D>::remove_contacts_of(std::uint32_t body) {
-    for (const ShapeId<D>& id : infos[body].shapes)
-        each_contact_of_shape(id.index, [&](std::uint32_t contact) { picked.push_back(contact); });
-    remove_picked_contacts();
-}
-
 #define CAROM_INSTANTIATE(D)                                                             \
     template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const;         \
     template void WorldState<D>::mark_moved(std::uint32_t);                              \
@@ -343,13 +265,9 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
     template bool WorldState<D>::is_terrain_contact(std::uint32_t, std::uint32_t) const; \
     template void WorldState<D>::find_pairs();                                           \
     template void WorldState<D>::drop_pairs();                                           \
-    template void WorldState<D>::remove_picked_contacts();                               \
     template void WorldState<D>::remove_visits_of(std::uint32_t);                        \
-    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                     \
-    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                \
     template void WorldState<D>::place_visits_anew(std::uint32_t);                       \
-    template void WorldState<D>::set_surface(ContactRecord<D>&) const;                   \
-    template void WorldState<D>::remove_contacts_of(std::uint32_t);
+    template void WorldState<D>::set_surface(ContactRecord<D>&) const;
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE

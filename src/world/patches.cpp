@@ -35,23 +35,30 @@ struct View {
 }  // namespace
 
 template <int D>
-void WorldState<D>::list_fixed_contacts() {
+void WorldState<D>::list_fixed_contact(std::uint32_t contact) {
+    const ContactRecord<D>& c = contacts[contact];
+    const bool a_moves = mover(c) == c.body_a;
+    fixed_contacts.push_back(
+        {mover(c), a_moves ? c.shape_a : c.shape_b, a_moves ? c.shape_b : c.shape_a, c.facet, contact});
+}
+
+template <int D>
+void WorldState<D>::sort_fixed_contacts() {
+    std::ranges::sort(fixed_contacts, [](const FixedContact& a, const FixedContact& b) {
+        return std::tie(a.body, a.shape, a.other, a.facet) < std::tie(b.body, b.shape, b.other, b.facet);
+    });
+}
+
+/// Lists the contacts of bodies that have several with fixed shapes, and what they were.
+template <int D>
+void WorldState<D>::list_patches() {
     fixed_contacts.clear();
-    for (const std::uint32_t body : awake) {
-        if (moving[body] != moves_freely) continue;
-        for (const ShapeId<D>& id : infos[body].shapes) {
-            const auto begin = static_cast<std::ptrdiff_t>(fixed_contacts.size());
-            contact_links.each(contact_list(id.index, true), [&](std::uint32_t i) {
-                const ContactRecord<D>& c = contacts[i];
-                const std::uint32_t other = c.shape_a == id.index ? c.shape_b : c.shape_a;
-                fixed_contacts.push_back({body, id.index, other, c.facet, i});
-            });
-            std::sort(fixed_contacts.begin() + begin, fixed_contacts.end(),
-                      [](const FixedContact& a, const FixedContact& b) {
-                          return std::tie(a.other, a.facet) < std::tie(b.other, b.facet);
-                      });
-        }
+    for (const std::uint32_t i : loose) {
+        const ContactRecord<D>& c = contacts[i];
+        if (c.on_fixed && moving[mover(c)] == moves_freely && fixed_contacts_of[mover(c)] > 1)
+            list_fixed_contact(i);
     }
+    sort_fixed_contacts();
 
     // Only a shape that has several needs to know what they were.
     patches_before.clear();
@@ -164,8 +171,10 @@ void WorldState<D>::merge_members(std::uint32_t body, std::span<const ContactRec
     }
 }
 
-#define CAROM_INSTANTIATE(D)                            \
-    template void WorldState<D>::list_fixed_contacts(); \
+#define CAROM_INSTANTIATE(D)                                        \
+    template void WorldState<D>::list_fixed_contact(std::uint32_t); \
+    template void WorldState<D>::sort_fixed_contacts();             \
+    template void WorldState<D>::list_patches();                    \
     template void WorldState<D>::merge_patches();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -166,8 +166,9 @@ std::vector<ShapeId<D>> World<D>::inside(ShapeId<D> sensor) const {
 template <int D>
 std::vector<Contact<D>> World<D>::contacts() const {
     std::vector<Contact<D>> result;
-    for (const ContactRecord<D>& c : state_->contacts) {
-        if (c.count == 0) continue;
+    for (std::uint32_t contact = 0; contact < state_->contacts.size(); ++contact) {
+        if (state_->contacts[contact].count == 0) continue;
+        const ContactRecord<D> c = state_->current(contact);
         Contact<D>& out = result.emplace_back();
         out.body_a = state_->body_slots.template id<BodyId<D>>(c.body_a);
         out.body_b = state_->body_slots.template id<BodyId<D>>(c.body_b);

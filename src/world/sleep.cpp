@@ -53,28 +53,27 @@ void WorldState<D>::wake_islands() {
 template <int D>
 void WorldState<D>::wake_touched(double dt) {
     if (awake.size() == movable.size()) return;  // nobody sleeps
-    const auto is_asleep = [&](std::uint32_t body) {
-        return types[body] == BodyType::dynamic && moving[body] == stands_still && !is_awake(body);
-    };
-    for (const std::uint32_t body : awake) {
-        each_contact_of(body, false, [&](std::uint32_t contact) {
-            const ContactRecord<D>& c = contacts[contact];
-            const std::uint32_t other = c.body_a == body ? c.body_b : c.body_a;
-            if (c.count == 0 || !is_asleep(other)) return;
-            const Vec<D> approach = states[c.body_b].velocity - states[c.body_a].velocity;
-            const double closing = dt * std::max(0.0, -dot(narrow<double>(c.normal), approach));
-            for (int i = 0; i < c.count; ++i) {
-                if (c.points[i].separation > closing) continue;
-                wake(other);
-                break;
-            }
-        });
+    for (const std::uint32_t contact : loose) {
+        const ContactRecord<D>& c = contacts[contact];
+        if (c.count == 0 || (moving[c.body_a] == stands_still) == (moving[c.body_b] == stands_still))
+            continue;
+        const bool sleeper_a = types[c.body_a] == BodyType::dynamic && !is_awake(c.body_a);
+        const bool sleeper_b = types[c.body_b] == BodyType::dynamic && !is_awake(c.body_b);
+        if (!sleeper_a && !sleeper_b) continue;
+        const Vec<D> approach = states[c.body_b].velocity - states[c.body_a].velocity;
+        const double closing = dt * std::max(0.0, -dot(narrow<double>(c.normal), approach));
+        for (int i = 0; i < c.count; ++i) {
+            if (c.points[i].separation > closing) continue;
+            wake(sleeper_a ? c.body_a : c.body_b);
+            break;
+        }
     }
     if (to_wake.empty()) return;
     wake_islands();
     std::ranges::sort(roused);
     for (const std::uint32_t i : roused) list_awake(i);
     roused.clear();
+    follow_bodies();
 }
 
 namespace {

@@ -10,11 +10,11 @@
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
+#include "dynamics/contact_cache.hpp"
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
 #include "geometry/shape.hpp"
 #include "solver/solver.hpp"
-#include "world/contact_cache.hpp"
 
 namespace carom::detail {
 
@@ -55,13 +55,6 @@ struct SensorPair {
     std::uint32_t sensor = 0, visitor = 0;  ///< shapes
     bool inside = false;
     bool placed_anew = true;  ///< one of the two was moved by the user, or the pair is new
-};
-
-/// A shape and a terrain that touch, by some of its facets.
-template <int D>
-struct TerrainTouch {
-    ShapePair<D> pair;
-    std::uint32_t contact = 0;  ///< the first of them
 };
 
 /// What happened: filled by a step and by what is removed before it.
@@ -112,8 +105,10 @@ struct WorldState {
 
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
-    std::vector<ContactCache<D>> caches;  ///< by contact: where its points were found
-    Adjacency contact_links;              ///< contacts between `contact_list`s of shapes
+    std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
+    Adjacency contact_links;                       ///< contacts between `contact_list`s of shapes
+    std::vector<std::uint32_t> loose;              ///< contacts that are looked at one by one, or `nowhere`
+    std::vector<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
     std::vector<SensorPair> sensor_pairs;
     Adjacency sensor_links;                  ///< sensor pairs between shapes
     std::vector<std::uint32_t> placed_anew;  ///< shapes that have sensor pairs which are so
@@ -126,22 +121,25 @@ struct WorldState {
     std::vector<ContactEnd<D>>
         dropped_contacts;  ///< that touched when they were dropped, since events were last reported
     std::vector<SensorEnd<D>> dropped_visits;
-    std::vector<TerrainTouch<D>> terrain_touched,
-        terrain_before;  ///< now and a step ago, in the order of shapes
+    PairSet terrain_touched;                    ///< a shape and a terrain that touch by some of its facets
+    std::vector<ShapePair<D>> terrain_changes;  ///< such pairs of which a facet began or ended to touch
 
     // Working space of a step.
     std::vector<std::uint32_t> awake;   ///< the awake dynamic bodies and the moving kinematic ones, by index
     std::vector<std::uint32_t> roused;  ///< bodies that may belong to `awake` by now
     std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
-    std::vector<std::uint32_t> active;  ///< indices of the contacts that the solver sees
-    std::vector<std::uint32_t> flying;  ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
+    std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
+    std::vector<std::uint32_t> touch_changes;  ///< contacts that began or ended to touch
+    std::vector<std::uint32_t> fast;           ///< bodies that came so far in this step that they may pass
+                                               ///< through something
+    std::vector<std::uint32_t> flying;         ///< indices of the dynamic bodies that nothing touches
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
-    std::vector<std::uint8_t> touched;
     std::vector<BodyState<D>> before;  ///< states of `awake` at the start of the step
     std::vector<std::uint32_t> place;  ///< in `awake` and `before`, by body index, of those that are there
-    std::vector<FixedContact> fixed_contacts;      ///< by place in `awake`, shape and fixed shape
+    std::vector<FixedContact> fixed_contacts;      ///< of some bodies, by body, shape and fixed shape
     std::vector<ContactRecord<D>> patches_before;  ///< of shapes that have several, in the last step
     std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
     std::vector<ManifoldPoint<D>> patch_points;
@@ -174,10 +172,26 @@ struct WorldState {
     bool is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
     void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
     bool are_near(const ContactRecord<D>& contact) const;
-    ContactRecord<D> new_contact(const PairKey& key) const;
     void set_surface(ContactRecord<D>& contact) const;
-    void forget_manifolds_of(std::uint32_t body);
     const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
+
+    // contacts.cpp: what is done about each contact, and where it is kept.
+    void add_contact(const PairKey& key);
+    void part_from_others();
+    void remove_contact(std::size_t contact);
+    void remove_picked_contacts();
+    void remove_contacts_of(std::uint32_t body);
+    void remove_contacts_of_shape(std::uint32_t shape);
+    void forget_manifolds_of(std::uint32_t body);
+    void loosen(std::uint32_t contact);
+    void stop_carrying(std::uint32_t contact);
+    void leave_solver(std::uint32_t contact);
+    void take_loose();
+    void follow_bodies();
+    bool can_be_carried(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    void place_contacts();
+    ContactRecord<D> current(std::uint32_t contact) const;
+    std::uint32_t mover(const ContactRecord<D>& contact) const;
 
     // narrow_phase.cpp: who touches whom, and where.
     void collide(double dt);
@@ -189,12 +203,15 @@ struct WorldState {
 
     // continuous.cpp: what is fast.
     void meet_ahead(ContactRecord<D>& contact, double dt) const;
+    void list_fast_contacts();
     void stop_at_obstacles();
     void stop_bullets();
     void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);
 
     // patches.cpp: flush fixed shapes are one surface.
-    void list_fixed_contacts();
+    void list_patches();
+    void list_fixed_contact(std::uint32_t contact);
+    void sort_fixed_contacts();
     template <class Visit>
     void each_fixed_group(const Visit& visit) const;
     void merge_patches();
@@ -213,6 +230,7 @@ struct WorldState {
     // events.cpp: what began, ended and hit.
     void report_contacts();
     void report_terrain();
+    std::uint32_t first_touching_facet(const ShapePair<D>& pair) const;
     void report_begin(const ContactRecord<D>& contact);
     void sense();
     bool overlap(std::uint32_t shape_a, std::uint32_t shape_b) const;
@@ -273,11 +291,6 @@ struct WorldState {
         for (const ShapeId<D>& id : infos[body].shapes)
             contact_links.each(contact_list(id.index, on_fixed), visit);
     }
-    void add_contact(const PairKey& key);
-    void remove_contact(std::size_t contact);
-    void remove_picked_contacts();
-    void remove_contacts_of(std::uint32_t body);
-    void remove_contacts_of_shape(std::uint32_t shape);
     void remove_visit(std::size_t sensor_pair);
     void remove_picked_visits();
     void remove_visits_of(std::uint32_t shape);

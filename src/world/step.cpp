@@ -49,8 +49,11 @@ void WorldState<D>::step(double dt) {
     refresh_boxes(dt);          // broad phase: fat boxes that were left are renewed
     drop_pairs();               //   neighbours that parted are forgotten
     find_pairs();               //   new ones become contacts
+    take_loose();               // contacts that are looked at one by one
+    follow_bodies();            // contacts of bodies that began or ceased to move
     collide(dt);                // narrow phase: manifolds, impulses carried over
     wake_touched(dt);           // sleepers that are being hit
+    place_contacts();           // what came out, for the solver
     sum_forces();               // gravity, the user's forces, generators
     solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
     fly_free_bodies(dt);        // all others: the integrator
@@ -122,24 +125,14 @@ void WorldState<D>::sum_forces() {
 
 template <int D>
 void WorldState<D>::solve_contacts(double dt) {
-    active.clear();
-    for (const std::uint32_t i : awake) touched[i] = 0;
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        const ContactRecord<D>& c = contacts[i];
-        const bool is_free = moving[c.body_a] == moves_freely || moving[c.body_b] == moves_freely;
-        if (c.count == 0 || !is_free) continue;
-        active.push_back(i);
-        touched[c.body_a] = touched[c.body_b] = 1;
-    }
-    solver.run({states, masses, types, moving, loads, contacts, active, dt, definition.substeps,
-                definition.restitution_threshold});
+    solver.run({states, masses, loads, dt, definition.substeps, definition.restitution_threshold});
 }
 
 template <int D>
 void WorldState<D>::fly_free_bodies(double dt) {
     flying.clear();
     for (const std::uint32_t i : awake) {
-        if (types[i] == BodyType::dynamic && !touched[i]) flying.push_back(i);
+        if (types[i] == BodyType::dynamic && !solver.has_contact(i)) flying.push_back(i);
     }
     const LoadModel<D> model{definition.gravity, applied, flying, forces};
     fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);

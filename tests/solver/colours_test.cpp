@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <set>
 
 #include "collision/random.hpp"
@@ -23,21 +25,31 @@ std::vector<SlotPair> random_pairs(Random& random, int contacts, std::uint32_t s
     return pairs;
 }
 
+/// Deals them all.
+struct Deal {
+    std::vector<int> colour;
+    std::array<std::size_t, Colours::count + 1> sizes{};
+
+    Deal(Colours& colours, const std::vector<SlotPair>& pairs, std::uint32_t first_movable) {
+        for (const SlotPair& pair : pairs) {
+            colour.push_back(colours.take(pair, first_movable));
+            ++sizes[colour.back()];
+        }
+    }
+};
+
 TEST(Colours, NoTwoContactsOfAColourShareABodyThatCanBePushed) {
     Random random(1);
     for (const std::uint32_t first_movable : {1u, 5u}) {
         const std::vector<SlotPair> pairs = random_pairs(random, 2000, 300, first_movable);
         Colours colours;
-        colours.deal(pairs, first_movable, 300);
+        const Deal deal(colours, pairs, first_movable);
         std::set<std::pair<int, std::uint32_t>> seen;
-        std::vector<std::size_t> sizes(Colours::count + 1);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            ++sizes[colours[i]];
-            if (colours[i] == Colours::overflow) continue;
+            if (deal.colour[i] == Colours::overflow) continue;
             for (const std::uint32_t slot : {pairs[i].a, pairs[i].b})
-                EXPECT_TRUE(slot < first_movable || seen.insert({colours[i], slot}).second) << i;
+                EXPECT_TRUE(slot < first_movable || seen.insert({deal.colour[i], slot}).second) << i;
         }
-        for (int c = 0; c <= Colours::count; ++c) EXPECT_EQ(colours.size(c), sizes[c]);
     }
 }
 
@@ -45,10 +57,10 @@ TEST(Colours, ContactsWithFixedBodiesComeFirst) {
     Random random(2);
     const std::vector<SlotPair> pairs = random_pairs(random, 500, 200, 20);
     Colours colours;
-    colours.deal(pairs, 20, 200);
+    const Deal deal(colours, pairs, 20);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const bool fixed = pairs[i].a < 20 || pairs[i].b < 20;
-        EXPECT_EQ(colours[i] < Colours::with_fixed, fixed);
+        EXPECT_EQ(deal.colour[i] < Colours::with_fixed, fixed);
     }
 }
 
@@ -57,10 +69,10 @@ TEST(Colours, WhatFindsNoColourOverflows) {
     std::vector<SlotPair> pairs;
     for (std::uint32_t i = 0; i < 100; ++i) pairs.push_back({1, 2 + i, pair_key(1, 2 + i)});
     Colours colours;
-    colours.deal(pairs, 1, 200);
-    EXPECT_EQ(colours.size(Colours::overflow), 100 - static_cast<std::size_t>(Colours::between_movable));
-    for (int c = Colours::with_fixed; c < Colours::count; ++c) EXPECT_EQ(colours.size(c), 1u);
-    EXPECT_EQ(colours[99], Colours::overflow);
+    const Deal deal(colours, pairs, 1);
+    EXPECT_EQ(deal.sizes[Colours::overflow], 100 - static_cast<std::size_t>(Colours::between_movable));
+    for (int c = Colours::with_fixed; c < Colours::count; ++c) EXPECT_EQ(deal.sizes[c], 1u);
+    EXPECT_EQ(deal.colour[99], Colours::overflow);
 }
 
 /// A grid of boxes needs four colours. Greedy colouring needs at most 7 (three more neighbours at either body
@@ -76,9 +88,9 @@ TEST(Colours, FewColoursAreUsed) {
         }
     }
     Colours colours;
-    colours.deal(pairs, 1, 1 + n * n);
+    const Deal deal(colours, pairs, 1);
     int used = 0;
-    for (int c = 0; c <= Colours::count; ++c) used += colours.size(c) > 0;
+    for (int c = 0; c <= Colours::count; ++c) used += deal.sizes[c] > 0;
     EXPECT_LE(used, 10);
 }
 
@@ -87,13 +99,24 @@ TEST(Colours, ContactsThatAreCreatedAlikeAreMixed) {
     std::vector<SlotPair> pairs;
     for (std::uint32_t i = 1; i < 1000; ++i) pairs.push_back({i, i + 1, pair_key(i, i + 1)});
     Colours colours;
-    colours.deal(pairs, 1, 1001);
+    const Deal deal(colours, pairs, 1);
     int rising = 0;
-    for (std::size_t i = 1; i < pairs.size(); ++i) rising += colours[i] > colours[i - 1];
+    for (std::size_t i = 1; i < pairs.size(); ++i) rising += deal.colour[i] > deal.colour[i - 1];
     EXPECT_NEAR(rising, 500, 150);
     int largest = 0;
-    for (int c = 0; c < Colours::count; ++c) largest = std::max(largest, static_cast<int>(colours.size(c)));
+    for (int c = 0; c < Colours::count; ++c) largest = std::max(largest, static_cast<int>(deal.sizes[c]));
     EXPECT_LT(largest, 500);
+}
+
+/// A colour that was given back is free again, for both bodies.
+TEST(Colours, AreGivenBack) {
+    Random random(4);
+    const std::vector<SlotPair> pairs = random_pairs(random, 1000, 200, 3);
+    Colours colours;
+    const Deal first(colours, pairs, 3);
+    for (std::size_t i = 0; i < pairs.size(); ++i) colours.give_back(pairs[i], first.colour[i], 3);
+    const Deal second(colours, pairs, 3);
+    EXPECT_EQ(second.colour, first.colour);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <cstring>
 
 #include "collision/random.hpp"
@@ -26,7 +28,6 @@ struct Scene {
     std::vector<BodyState<D>> states;
     std::vector<BodyMass<D>> masses;
     std::vector<BodyType> types;
-    std::vector<std::uint8_t> moving;
     std::vector<Load<D>> loads;
     std::vector<ContactRecord<D>> contacts;
     double gravity = 10;
@@ -49,7 +50,6 @@ struct Scene {
         states.push_back(state);
         masses.push_back(m);
         types.push_back(type);
-        moving.push_back(type != BodyType::fixed);
         loads.push_back({});
         loads.back().force[1] = -gravity * m.mass;
         return static_cast<std::uint32_t>(states.size() - 1);
@@ -75,10 +75,17 @@ struct Scene {
         contacts.push_back(c);
     }
     void step(Solver<D>& solver, double dt = 1.0 / 60) {
-        std::vector<std::uint32_t> active(contacts.size());
-        for (std::size_t i = 0; i < active.size(); ++i) active[i] = static_cast<std::uint32_t>(i);
+        std::vector<std::uint32_t> awake;
+        for (std::uint32_t i = 0; i < states.size(); ++i) {
+            if (types[i] != BodyType::fixed) awake.push_back(i);
+        }
+        solver.follow(awake, types, [](std::uint32_t) {});
+        for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+            contacts[i].place ? solver.write(contacts[i], nullptr) : solver.add(i, contacts[i], nullptr);
+        }
         const std::vector<BodyState<D>> before = states;
-        solver.run({states, masses, types, moving, loads, contacts, active, dt, 4, 1});
+        solver.run({states, masses, loads, dt, 4, 1});
+        for (ContactRecord<D>& c : contacts) solver.read({}, c);
         // As if nothing turned, which is good enough for gaps of things at rest.
         for (ContactRecord<D>& c : contacts) {
             const auto way = [&](std::uint32_t body) {
@@ -158,7 +165,6 @@ Scene<D> heap(std::uint64_t seed) {
         scene.masses[body].linear_damping = i % 3 == 0 ? 0.5 : 0;
         if (i % 7 == 0) {
             scene.masses[body].locks.x = true;
-            scene.masses[body].locked = true;
         }
     }
     for (std::uint32_t i = 2; i < 62; ++i) scene.touch(2, i == 2 ? 0 : i, 0.2, i % 2 ? 0.001 : -0.001, 0.4);
@@ -208,25 +214,62 @@ TYPED_TEST(SolverIn, TheBitsAreTheSameForAnyWidth) {
     }
 }
 
-/// What the solver keeps from step to step are buffers: a fresh one goes on just the same.
-TYPED_TEST(SolverIn, ItKeepsNoState) {
+/// Contacts that come and go leave nothing behind: a fresh solver goes on just the same with those that stay.
+TYPED_TEST(SolverIn, WhatWasRemovedIsForgotten) {
     constexpr int D = TypeParam::value;
-    Scene<D> one = heap<D>(7), other = heap<D>(7);
-    Solver<D> kept;
-    for (int i = 0; i < 4; ++i) {
-        Scene<D> small;
-        const auto a = small.add(BodyType::fixed, at<D>(0, -0.5), 0),
-                   b = small.add(BodyType::dynamic, at<D>(0, 0.5), 1);
-        small.touch(a, b, 0.5, 0, 0.5);
-        small.step(kept);
-        one.step(kept);
-        Solver<D> fresh;
-        other.step(fresh);
+    for (const int width : widths()) {
+        set_lane_width(width);
+        Scene<D> kept = heap<D>(7), other = heap<D>(7);
+        Solver<D> used;
+        for (int i = 0; i < 3; ++i) {
+            kept.step(used);
+            Solver<D> fresh;
+            other.step(fresh);
+            for (std::size_t k = 0; k < kept.states.size(); ++k) {
+                EXPECT_EQ(kept.states[k].position, other.states[k].position);
+                EXPECT_EQ(kept.states[k].velocity, other.states[k].velocity);
+            }
+            // First the last, the first, and one in between; then all.
+            const auto count = static_cast<std::uint32_t>(kept.contacts.size());
+            std::vector<std::uint32_t> order{count - 1, 0, count / 2};
+            for (std::uint32_t k = 0; k < count; ++k) order.push_back(k);
+            for (const std::uint32_t k : order) {
+                if (!kept.contacts[k].place) continue;
+                const std::uint32_t index = kept.contacts[k].place.index;
+                const std::uint32_t moved = used.remove(kept.contacts[k]);
+                if (moved != Solver<D>::none) kept.contacts[moved].place.index = index;
+            }
+            EXPECT_EQ(used.contacts(), 0u);
+            for (ContactRecord<D>& c : other.contacts) c.place = {};
+        }
     }
-    for (std::size_t i = 0; i < one.states.size(); ++i) {
-        EXPECT_EQ(one.states[i].position, other.states[i].position);
-        EXPECT_EQ(one.states[i].velocity, other.states[i].velocity);
+}
+
+/// Contacts follow their bodies as these fall asleep, wake, and are moved by the user.
+TYPED_TEST(SolverIn, ContactsAreLetGoWithTheirBodies) {
+    constexpr int D = TypeParam::value;
+    Scene<D> scene = heap<D>(3);
+    Solver<D> solver;
+    scene.step(solver);
+    std::vector<std::uint32_t> awake;
+    for (std::uint32_t i = 1; i < scene.states.size(); ++i) {
+        if (i != 20) awake.push_back(i);
     }
+    std::set<std::uint32_t> let_go;
+    const auto remove = [&](std::uint32_t i) {
+        let_go.insert(i);
+        const std::uint32_t index = scene.contacts[i].place.index;
+        const std::uint32_t moved = solver.remove(scene.contacts[i]);
+        if (moved != Solver<D>::none) scene.contacts[moved].place.index = index;
+    };
+    EXPECT_TRUE(solver.follow(awake, scene.types, remove));
+    for (std::uint32_t i = 0; i < scene.contacts.size(); ++i) {
+        const ContactRecord<D>& c = scene.contacts[i];
+        EXPECT_EQ(let_go.contains(i), c.body_a == 20 || c.body_b == 20) << i;
+        EXPECT_EQ(static_cast<bool>(c.place), !let_go.contains(i)) << i;
+    }
+    EXPECT_FALSE(let_go.empty());
+    EXPECT_FALSE(solver.follow(awake, scene.types, remove)) << "nothing has changed since";
 }
 
 /// A body that has become non-finite spoils nothing that it does not touch.

@@ -1,0 +1,251 @@
+#include "solver/contact_store.hpp"
+
+#include "solver/prepare.hpp"
+
+namespace carom::detail {
+
+namespace {
+
+/// Fields of the marks.
+template <int D>
+struct MarkFields {
+    static constexpr ContactMarks<D, float> model{};
+    static std::size_t way() { return field_of(model, model.way_squared); }
+    static std::size_t restitution() { return field_of(model, model.restitution); }
+    static std::size_t touching() { return field_of(model, model.touching); }
+};
+
+/// A double as the sum of two floats.
+struct Split {
+    float first, rest;
+    explicit Split(double value)
+        : first(static_cast<float>(value)), rest(static_cast<float>(value - static_cast<double>(first))) {}
+};
+
+void split(const Rotation<2>& q, Rotation<2, float>& first, Rotation<2, float>& rest) {
+    const Split c(q.c), s(q.s);
+    first = {c.first, s.first};
+    rest = {c.rest, s.rest};
+}
+void split(const Rotation<3>& q, Rotation<3, float>& first, Rotation<3, float>& rest) {
+    const Split x(q.x), y(q.y), z(q.z), w(q.w);
+    first = {x.first, y.first, z.first, w.first};
+    rest = {x.rest, y.rest, z.rest, w.rest};
+}
+
+template <int D>
+ContactMarks<D, float> marks_of(const ContactCache<D>& cache) {
+    ContactMarks<D, float> marks;
+    for (int i = 0; i < D; ++i) {
+        const Split place(cache.pose.position[i]);
+        marks.place[i] = place.first;
+        marks.place_rest[i] = place.rest;
+    }
+    split(cache.pose.rotation, marks.turn, marks.turn_rest);
+    marks.normal = cache.normal;
+    for (int k = 0; k < max_points<D>; ++k) {
+        const auto& from = cache.points[k];
+        const bool there = k < cache.count;
+        marks.points[k].on_a = there ? narrow<float>(from.on_a) : Vec<D, float>{};
+        marks.points[k].on_b = there ? narrow<float>(from.on_a - cache.pose.position) : Vec<D, float>{};
+        marks.points[k].separation = there ? from.separation : no_separation;
+    }
+    marks.way_squared = cache.way * cache.way;
+    return marks;
+}
+
+/// All rows but the points.
+template <int D>
+ContactRows<D, float> rows_of(const ContactRecord<D>& record) {
+    ContactRows<D, float> rows;
+    rows.normal = record.normal;
+    const auto t = tangents<D>(record.normal);
+    rows.tangent = t[0];
+    for (int i = 0; i < D - 1; ++i) {
+        rows.friction_impulse[i] = dot(record.friction_impulse, t[i]);
+        rows.surface_speed[i] = dot(record.surface_velocity, t[i]);
+    }
+    rows.friction = record.friction;
+    rows.twist_impulse = record.twist_impulse;
+    rows.roundness_a = record.roundness_a;
+    rows.roundness_b = record.roundness_b;
+    rows.rolling = record.rolling;
+    rows.rolling_impulse = record.spin_impulse;
+    return rows;
+}
+
+template <int D>
+void set_point(NormalRow<D, float>& row, const ContactRecordPoint<D>& from) {
+    row.arm_a = from.arm_a;
+    row.arm_b = from.arm_b;
+    row.separation = from.separation;
+    row.impulse = from.impulse;
+    row.mass = 1;  // used; see `weigh_rows`
+}
+
+}  // namespace
+
+template <int D>
+void ContactStore<D>::set_passes(const Passes<D>& passes) {
+    passes_ = &passes;
+    rows_.set_width(passes.width);
+    marks_.set_width(passes.width);
+}
+
+template <int D>
+std::uint32_t ContactStore<D>::push(std::uint32_t contact, const BodyPair& bodies,
+                                    std::uint32_t first_movable) {
+    const auto index = static_cast<std::uint32_t>(size_++);
+    if (index % width() == 0) {
+        const std::size_t lanes = index + width();
+        rows_.resize(lanes / width());
+        marks_.resize(lanes / width());
+        a_.resize(lanes, nobody);
+        b_.resize(lanes, nobody);
+        body_a_.resize(lanes, 0);
+        body_b_.resize(lanes, 0);
+        contact_.resize(lanes, none);
+        traits_.push_back(0);
+        found_.push_back(0);
+        for (std::size_t lane = index; lane < lanes; ++lane) clear(static_cast<std::uint32_t>(lane));
+    }
+    a_[index] = bodies.slot_a;
+    b_[index] = bodies.slot_b;
+    body_a_[index] = bodies.body_a;
+    body_b_[index] = bodies.body_b;
+    contact_[index] = contact;
+    mark_fixed(index / width(), first_movable);
+    return index;
+}
+
+template <int D>
+std::uint32_t ContactStore<D>::remove(std::uint32_t index, std::uint32_t first_movable) {
+    const auto last = static_cast<std::uint32_t>(--size_);
+    std::uint32_t moved = none;
+    if (index != last) {
+        moved = contact_[last];
+        rows_.set(index, rows_.get(last));
+        marks_.set(index, marks_.get(last));
+        a_[index] = a_[last];
+        b_[index] = b_[last];
+        body_a_[index] = body_a_[last];
+        body_b_[index] = body_b_[last];
+        contact_[index] = moved;
+        traits_[index / width()] |= traits_[last / width()];
+        mark_fixed(index / width(), first_movable);
+    }
+    if (last % width() == 0) {
+        a_.resize(last);
+        b_.resize(last);
+        body_a_.resize(last);
+        body_b_.resize(last);
+        contact_.resize(last);
+        traits_.pop_back();
+        found_.pop_back();
+    } else {
+        clear(last);
+        mark_fixed(last / width(), first_movable);
+    }
+    return moved;
+}
+
+template <int D>
+void ContactStore<D>::clear(std::uint32_t index) {
+    rows_.set(index, {});
+    Marks marks;
+    marks.way_squared = -1;
+    marks_.set(index, marks);
+    a_[index] = b_[index] = nobody;
+    body_a_[index] = body_b_[index] = 0;
+    contact_[index] = none;
+}
+
+/// Does any lane of the block have a body that cannot be pushed, be it nobody?
+template <int D>
+void ContactStore<D>::mark_fixed(std::size_t block, std::uint32_t first_movable) {
+    bool fixed = false;
+    for (std::size_t lane = block * width(); lane < (block + 1) * width(); ++lane)
+        fixed |= a_[lane] < first_movable || b_[lane] < first_movable;
+    traits_[block] = static_cast<std::uint8_t>((traits_[block] & ~some_fixed) | (fixed ? some_fixed : 0));
+}
+
+template <int D>
+void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
+                            const ContactCache<D>* cache) {
+    Rows rows = rows_of(record);
+    Marks marks;
+    if (cache) {
+        marks = marks_of(*cache);
+        int next = 0;  // the record has those of the cache's points that are within reach, in their order
+        for (int k = 0; k < cache->count && next < record.count; ++k) {
+            if (record.points[next].feature == cache->points[k].feature)
+                set_point(rows.points[k], record.points[next++]);
+        }
+    } else {
+        marks.way_squared = -1;
+        for (int k = 0; k < record.count; ++k) set_point(rows.points[k], record.points[k]);
+    }
+    marks.restitution = record.restitution;
+    marks.touching = record.touching ? 1.0f : 0.0f;
+    rows_.set(index, rows);
+    marks_.set(index, marks);
+    std::uint8_t& traits = traits_[index / width()];
+    if (record.rolling > 0) traits |= some_rolling;
+    if (record.roundness_a != 0 || record.roundness_b != 0) traits |= some_round;
+    if (record.restitution != 0) traits |= some_bouncy;
+}
+
+template <int D>
+void ContactStore<D>::read(std::uint32_t index, const ContactCache<D>& cache,
+                           ContactRecord<D>& record) const {
+    const Rows rows = rows_.get(index);
+    record.touching = marks_.at(index, MarkFields<D>::touching()) != 0;
+    record.normal = rows.normal;
+    record.friction_impulse = along_tangents(rows, rows.friction_impulse);
+    record.total_friction = along_tangents(rows, rows.total_friction);
+    record.twist_impulse = rows.twist_impulse;
+    record.spin_impulse = rows.rolling_impulse;
+    const bool carried = is_carried(index);
+    const int count = carried ? cache.count : record.count;
+    if (carried) record.count = 0;
+    for (int k = 0; k < count; ++k) {
+        const NormalRow<D, float>& row = rows.points[k];
+        if (carried && !(row.mass > 0)) continue;
+        ContactRecordPoint<D>& p = record.points[carried ? record.count++ : k];
+        if (carried) p.feature = cache.points[k].feature;
+        p.arm_a = row.arm_a;
+        p.arm_b = row.arm_b;
+        p.separation = row.separation;
+        p.impulse = row.impulse;
+        p.total_impulse = row.total_impulse;
+    }
+}
+
+template <int D>
+bool ContactStore<D>::is_carried(std::uint32_t index) const {
+    return marks_.at(index, MarkFields<D>::way()) >= 0;
+}
+
+template <int D>
+float ContactStore<D>::restitution(std::uint32_t index) const {
+    return marks_.at(index, MarkFields<D>::restitution());
+}
+
+template <int D>
+BlockSpan<D> ContactStore<D>::span(std::size_t first, std::size_t count) {
+    const std::size_t lane = first * width();
+    return {rows_.data() + lane * LaneStore<Rows>::fields,
+            marks_.data() + lane * LaneStore<Marks>::fields,
+            a_.data() + lane,
+            b_.data() + lane,
+            body_a_.data() + lane,
+            body_b_.data() + lane,
+            traits_.data() + first,
+            found_.data() + first,
+            count};
+}
+
+template class ContactStore<2>;
+template class ContactStore<3>;
+
+}  // namespace carom::detail

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "dynamics/body.hpp"
+#include "math/dim.hpp"
+#include "solver/rows.hpp"
+
+/// Manifolds that outlive a step, in lanes. As long as two bodies hardly move against each other, the points
+/// found when their shapes were last collided are carried along with them (see dynamics/contact_cache.hpp).
+namespace carom::detail {
+
+/// The manifold as it was found, one contact a lane. Where the bodies lay is kept as a sum of two floats, so
+/// that small differences of large coordinates are exact.
+template <int D, class F>
+struct ContactMarks {
+    struct Point {
+        Vec<D, F> on_a{}, on_b{};  ///< from either centre of mass, both in a's axes as they were then
+        F separation{};
+    };
+
+    Vec<D, F> place{}, place_rest{};     ///< of b's centre of mass, seen from a
+    Rotation<D, F> turn{}, turn_rest{};  ///< of b, seen from a
+    Vec<D, F> normal{};                  ///< in a's axes
+    std::array<Point, max_points<D>> points{};
+    F way_squared{};  ///< how far b may move against a before the manifold is to be made anew; < 0: at once
+    F restitution{};
+    F touching{};  ///< 1 if the contact touched when events were last reported, else 0
+};
+
+/// The separation of a point that is not there.
+constexpr float no_separation = 1e30f;
+
+/// Where a body is, as many of them as there are lanes.
+template <int D, class F>
+struct Pose {
+    Vec<D, Wide<F>> position{};
+    Rotation<D, Wide<F>> rotation{};
+};
+
+/// The states of all bodies as an array of doubles.
+template <int D>
+struct PoseView {
+    static constexpr std::size_t stride = sizeof(BodyState<D>) / sizeof(double);
+    static_assert(offsetof(BodyState<D>, position) == 0);
+    static_assert(offsetof(BodyState<D>, rotation) == D * sizeof(double));
+    static_assert(sizeof(BodyState<D>) % sizeof(double) == 0);
+
+    const double* states = nullptr;
+};
+
+template <class F>
+CAROM_INLINE Pose<2, F> gather_pose(const PoseView<2>& view, const std::uint32_t* bodies) {
+    Pose<2, F> pose;
+    gather_pairs(view.states, bodies, PoseView<2>::stride, pose.position.x, pose.position.y);
+    gather_pairs(view.states + 2, bodies, PoseView<2>::stride, pose.rotation.c, pose.rotation.s);
+    return pose;
+}
+template <class F>
+CAROM_INLINE Pose<3, F> gather_pose(const PoseView<3>& view, const std::uint32_t* bodies) {
+    Pose<3, F> pose;
+    Wide<F> unused;
+    gather_pairs(view.states, bodies, PoseView<3>::stride, pose.position.x, pose.position.y);
+    gather_pairs(view.states + 2, bodies, PoseView<3>::stride, pose.position.z, pose.rotation.x);
+    gather_pairs(view.states + 4, bodies, PoseView<3>::stride, pose.rotation.y, pose.rotation.z);
+    gather_pairs(view.states + 6, bodies, PoseView<3>::stride, pose.rotation.w, unused);
+    return pose;
+}
+
+template <class F>
+CAROM_INLINE Rotation<2, Wide<F>> sum_of(const Rotation<2, F>& q, const Rotation<2, F>& rest) {
+    using W = Wide<F>;
+    return {W(q.c) + W(rest.c), W(q.s) + W(rest.s)};
+}
+template <class F>
+CAROM_INLINE Rotation<3, Wide<F>> sum_of(const Rotation<3, F>& q, const Rotation<3, F>& rest) {
+    using W = Wide<F>;
+    return {W(q.x) + W(rest.x), W(q.y) + W(rest.y), W(q.z) + W(rest.z), W(q.w) + W(rest.w)};
+}
+
+/// The rotation vector of a small rotation to third order, and whether it is one. 2D: θ ≈ sin θ; 3D: θ ≈ 2
+/// sin θ/2, either sign of the quaternion being the same rotation.
+template <class F>
+CAROM_INLINE auto small_turn(const Rotation<2, Wide<F>>& q, Angular<2, F>& angle) {
+    angle = F(q.s);
+    return F(q.c) > F(0);
+}
+template <class F>
+CAROM_INLINE auto small_turn(const Rotation<3, Wide<F>>& q, Angular<3, F>& angle) {
+    const F w(q.w), sign = select(F(0) > w, F(-2), F(2));
+    angle = Vec<3, F>{F(q.x), F(q.y), F(q.z)} * sign;
+    return fabs(w) > F(0.5f);
+}
+
+/// How far the rotation vector θ moves the end of an arm: θ × r + ½ θ × (θ × r).
+template <int D, class F>
+CAROM_INLINE Vec<D, F> way_of(const Angular<D, F>& angle, const Vec<D, F>& arm) {
+    const Vec<D, F> first = cross(angle, arm);
+    return first + F(0.5f) * cross(angle, first);
+}
+
+/// Carries the points along to where the bodies are now. Points out of reach are left out. The result tells
+/// the lanes for which that does not do: the bodies have moved too far, or all points are out of reach. The
+/// rows of those keep the impulses, and which points have some.
+template <int D, class F>
+CAROM_INLINE auto refresh(ContactRows<D, F>& rows, const ContactMarks<D, F>& marks, const Pose<D, F>& a,
+                          const Pose<D, F>& b, F reach, F most_turn) {
+    using W = Wide<F>;
+    const Vec<D, W> place = unrotate(a.rotation, Vec<D, W>(b.position - a.position));
+    Vec<D, F> way;
+    for (int i = 0; i < D; ++i) way[i] = F(place[i] - (W(marks.place[i]) + W(marks.place_rest[i])));
+    Angular<D, F> angle{};
+    const auto near_turn = small_turn<F>(
+        (inverse(a.rotation) * b.rotation) * inverse(sum_of(marks.turn, marks.turn_rest)), angle);
+    const auto holds = both(near_turn, both(!(dot(way, way) > marks.way_squared),
+                                            !(angular_dot(angle, angle) > most_turn * most_turn)));
+
+    Rotation<D, F> axes;
+    if constexpr (D == 2) {
+        axes = {F(a.rotation.c), F(a.rotation.s)};
+    } else {
+        axes = {F(a.rotation.x), F(a.rotation.y), F(a.rotation.z), F(a.rotation.w)};
+    }
+    const Vec<D, F> friction = along_tangents(rows, rows.friction_impulse);
+    rows.normal = rotate(axes, marks.normal);
+    const auto t = tangents<D>(rows.normal);
+    rows.tangent = t[0];
+    for (int i = 0; i < D - 1; ++i) {
+        rows.friction_impulse[i] = dot(friction, t[i]);
+        rows.total_friction[i] = F(0);
+    }
+    F most_used = F(0);
+    for (int k = 0; k < max_points<D>; ++k) {
+        const auto& mark = marks.points[k];
+        NormalRow<D, F>& p = rows.points[k];
+        const Vec<D, F> parted = way + way_of<D>(angle, mark.on_b);
+        p.separation = mark.separation + dot(marks.normal, parted);
+        p.arm_a = rotate(axes, Vec<D, F>(mark.on_a + F(0.5f) * parted));
+        p.arm_b = rotate(axes, Vec<D, F>(mark.on_b - way + F(0.5f) * parted));
+        const F used = select(p.separation > reach, F(0), F(1));
+        most_used = maximum(most_used, used);
+        p.mass = select(holds, used, p.mass);
+        p.impulse = select(both(holds, F(0.5f) > used), F(0), p.impulse);
+        p.total_impulse = F(0);
+    }
+    return !both(holds, most_used > F(0));
+}
+
+/// Shapes that touched go on touching until the gap is larger than this, so that what trembles at rest does
+/// not report an end and a beginning every other step.
+constexpr float parting_distance = 0.002f;  // m
+
+/// Which contacts have begun or ended to touch: one begins when it carries an impulse or overlaps, and ends
+/// when it has done neither and its gap is wide.
+template <int D, class F>
+CAROM_INLINE auto touch(const ContactRows<D, F>& rows, ContactMarks<D, F>& marks) {
+    F held = F(0), near = F(0);
+    for (const NormalRow<D, F>& p : rows.points) {
+        const auto used = p.mass > F(0);
+        held = select(p.total_impulse > F(0), F(1), select(both(used, !(p.separation > F(0))), F(1), held));
+        near = select(both(used, !(p.separation > F(parting_distance))), F(1), near);
+    }
+    const F before = marks.touching;
+    marks.touching = maximum(held, before * near);
+    return fabs(marks.touching - before) > F(0);
+}
+
+}  // namespace carom::detail

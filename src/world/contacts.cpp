@@ -1,0 +1,219 @@
+#include <algorithm>
+
+#include "core/remove_each.hpp"
+#include "world/state.hpp"
+
+// What is done about each contact, and where it is kept. Contacts that carry impulses are the solver's, and
+// most of these need nothing but to be carried along with their bodies, which the solver does for many at
+// once. The others are loose: each step looks at them one by one. They are out of reach, on something
+// particular, or round. Contacts of bodies that all stand still are neither, and cost nothing.
+
+namespace carom::detail {
+
+/// The body of a contact with a fixed shape that is not the fixed one.
+template <int D>
+std::uint32_t WorldState<D>::mover(const ContactRecord<D>& c) const {
+    return types[c.body_a] == BodyType::fixed ? c.body_b : c.body_a;
+}
+
+template <int D>
+void WorldState<D>::add_contact(const PairKey& key) {
+    ContactRecord<D> c;
+    c.shape_a = key.a;
+    c.shape_b = key.b;
+    c.facet = key.part;
+    c.body_a = shapes[key.a].body;
+    c.body_b = shapes[key.b].body;
+    c.on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
+    set_surface(c);
+    contact_links.add(static_cast<std::uint32_t>(contacts.size()), contact_list(key.a, c.on_fixed),
+                      contact_list(key.b, c.on_fixed));
+    contacts.push_back(c);
+    caches.emplace_back();
+    loosen(static_cast<std::uint32_t>(contacts.size() - 1));
+    if (!c.on_fixed) return;
+    if (++fixed_contacts_of[mover(c)] == 2) regrouped.push_back(mover(c));
+}
+
+/// A body that has several contacts with fixed shapes may lie on one surface that they make up, so that they
+/// have to be looked at together.
+template <int D>
+void WorldState<D>::part_from_others() {
+    for (const std::uint32_t body : regrouped)
+        each_contact_of(body, true, [&](std::uint32_t contact) { stop_carrying(contact); });
+}
+
+template <int D>
+void WorldState<D>::remove_contact(std::size_t contact) {
+    const auto i = static_cast<std::uint32_t>(contact),
+               last = static_cast<std::uint32_t>(contacts.size() - 1);
+    if (contacts[i].place) leave_solver(i);
+    const ContactRecord<D>& c = contacts[i];
+    if (c.loose != c.nowhere) loose[c.loose] = c.nowhere;
+    if (c.on_fixed) --fixed_contacts_of[mover(c)];
+    pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
+    if (c.touching) {
+        const ShapePair<D> pair = names(c.shape_a, c.shape_b);
+        c.facet == no_part ? dropped_contacts.push_back({pair}) : terrain_changes.push_back(pair);
+    }
+    contact_links.remove(i);
+    if (i != last) {
+        contact_links.renumber(last, i);
+        contacts[i] = contacts[last];
+        caches[i] = caches[last];
+        if (contacts[i].place) solver.rename(contacts[i], i);
+        if (contacts[i].loose != c.nowhere) loose[contacts[i].loose] = i;
+    }
+    contacts.pop_back();
+    caches.pop_back();
+}
+
+template <int D>
+void WorldState<D>::remove_contacts_of(std::uint32_t body) {
+    for (const ShapeId<D>& id : infos[body].shapes)
+        each_contact_of_shape(id.index, [&](std::uint32_t contact) { picked.push_back(contact); });
+    remove_picked_contacts();
+}
+
+template <int D>
+void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
+    each_contact_of_shape(shape, [&](std::uint32_t contact) { picked.push_back(contact); });
+    remove_picked_contacts();
+}
+
+template <int D>
+void WorldState<D>::remove_picked_contacts() {
+    remove_each(picked, contacts, [&](std::uint32_t contact) { remove_contact(contact); });
+}
+
+/// The shapes of the body, or its centre of mass, changed.
+template <int D>
+void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
+    for (const ShapeId<D>& id : infos[body].shapes) {
+        each_contact_of_shape(id.index, [&](std::uint32_t contact) {
+            stop_carrying(contact);
+            caches[contact].forget();
+        });
+    }
+}
+
+/// The contact is to be looked at, in this step or the next. From then on its record is up to date.
+template <int D>
+void WorldState<D>::loosen(std::uint32_t contact) {
+    ContactRecord<D>& c = contacts[contact];
+    if (c.loose != c.nowhere) return;
+    if (c.place) solver.read(caches[contact], c);
+    c.loose = static_cast<std::uint32_t>(loose.size());
+    loose.push_back(contact);
+}
+
+template <int D>
+void WorldState<D>::stop_carrying(std::uint32_t contact) {
+    ContactRecord<D>& c = contacts[contact];
+    if (!c.place || !solver.is_carried(c)) return;
+    loosen(contact);
+    solver.write(c, nullptr);
+}
+
+template <int D>
+void WorldState<D>::leave_solver(std::uint32_t contact) {
+    ContactRecord<D>& c = contacts[contact];
+    const std::uint32_t index = c.place.index;
+    const std::uint32_t moved = solver.remove(c);
+    if (moved != Solver<D>::none) contacts[moved].place.index = index;
+}
+
+/// Brings the records of the loose contacts up to date with what the solver did.
+template <int D>
+void WorldState<D>::take_loose() {
+    std::erase(loose, ContactRecord<D>::nowhere);
+    for (std::size_t k = 0; k < loose.size(); ++k) {
+        ContactRecord<D>& c = contacts[loose[k]];
+        c.loose = static_cast<std::uint32_t>(k);
+        if (c.place) solver.read(caches[loose[k]], c);
+    }
+}
+
+/// What is known of the contact now.
+template <int D>
+ContactRecord<D> WorldState<D>::current(std::uint32_t contact) const {
+    ContactRecord<D> c = contacts[contact];
+    if (c.place) solver.read(caches[contact], c);
+    return c;
+}
+
+/// The solver is told which bodies move. Contacts of those that began to are looked at from now on.
+template <int D>
+void WorldState<D>::follow_bodies() {
+    const bool changed = solver.follow(awake, types, [&](std::uint32_t i) {
+        loosen(i);
+        leave_solver(i);
+    });
+    if (!changed) return;
+    for (const std::uint32_t body : awake) {
+        if (!solver.changed(body)) continue;
+        for (const bool on_fixed : {false, true}) {
+            each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
+                if (!contacts[contact].place) loosen(contact);
+            });
+        }
+    }
+}
+
+/// Does the contact need nothing but to be carried along with its bodies? Not where the manifold is made anew
+/// in each step, where several fixed shapes may be one surface, and where a sleeper may have to be woken.
+template <int D>
+bool WorldState<D>::can_be_carried(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
+    if (!definition.continuous || cache.way < 0 || c.special) return false;
+    if (c.on_fixed) return fixed_contacts_of[mover(c)] == 1;
+    return moving[c.body_a] != stands_still && moving[c.body_b] != stands_still;
+}
+
+/// Gives the solver what came out for the loose contacts. Those that can be carried along are not loose then.
+/// The solver takes up new ones in their order, so that their colours do not depend on how they came here.
+template <int D>
+void WorldState<D>::place_contacts() {
+    to_place.clear();
+    std::size_t left = 0;
+    for (const std::uint32_t i : loose) {
+        if (i == ContactRecord<D>::nowhere) continue;
+        ContactRecord<D>& c = contacts[i];
+        c.loose = c.nowhere;
+        if (!any_moves(c.body_a, c.body_b)) continue;
+        const bool pushes =
+            c.count > 0 && (moving[c.body_a] == moves_freely || moving[c.body_b] == moves_freely);
+        const bool carried = pushes && can_be_carried(c, caches[i]);
+        if (pushes && c.place) solver.write(c, carried ? &caches[i] : nullptr);
+        if (pushes && !c.place) to_place.push_back(i);
+        if (!pushes && c.place) leave_solver(i);
+        if (carried) continue;
+        c.loose = static_cast<std::uint32_t>(left);
+        loose[left++] = i;
+    }
+    loose.resize(left);
+    std::ranges::sort(to_place);
+    for (const std::uint32_t i : to_place) {
+        ContactRecord<D>& c = contacts[i];
+        solver.add(i, c, can_be_carried(c, caches[i]) ? &caches[i] : nullptr);
+    }
+}
+
+#define CAROM_INSTANTIATE(D)                                                    \
+    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const; \
+    template void WorldState<D>::add_contact(const PairKey&);                   \
+    template void WorldState<D>::part_from_others();                            \
+    template void WorldState<D>::remove_picked_contacts();                      \
+    template void WorldState<D>::remove_contacts_of(std::uint32_t);             \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);       \
+    template void WorldState<D>::forget_manifolds_of(std::uint32_t);            \
+    template void WorldState<D>::loosen(std::uint32_t);                         \
+    template void WorldState<D>::stop_carrying(std::uint32_t);                  \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;      \
+    template void WorldState<D>::take_loose();                                  \
+    template void WorldState<D>::follow_bodies();                               \
+    template void WorldState<D>::place_contacts();
+CAROM_INSTANTIATE(2)
+CAROM_INSTANTIATE(3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom::detail
