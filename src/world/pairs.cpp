@@ -41,7 +41,7 @@ Aabb<D> box_in(const Transform<D>& frame, const Aabb<D>& box) {
 }  // namespace
 
 template <int D>
-const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>& shape) const {
+const OuterBox<D>& WorldState<D>::fat_box(const ShapeRecord<D>& shape) const {
     return (shape.in_fixed_tree ? fixed_tree : moving_tree).box(shape.leaf);
 }
 
@@ -128,7 +128,7 @@ void WorldState<D>::find_pairs() {
             const PairKey key = PairKey::of(shape, other);
             if (!pairs.contains(key)) new_pairs.push_back(key);
         };
-        const Aabb<D>& box = fat_box(s);
+        const OuterBox<D>& box = fat_box(s);
         moving_tree.query(box, meet);
         if (!s.in_fixed_tree) fixed_tree.query(box, meet);
     }
@@ -164,7 +164,7 @@ template <int D>
 void WorldState<D>::find_facets(std::uint32_t shape_a, std::uint32_t shape_b) {
     const bool a_terrain = shapes[shape_a].shape.kind == ShapeKind::terrain;
     const ShapeRecord<D>& ground = shapes[a_terrain ? shape_a : shape_b];
-    const Aabb<D>& box = fat_box(shapes[a_terrain ? shape_b : shape_a]);
+    const Aabb<D> box = widened(fat_box(shapes[a_terrain ? shape_b : shape_a]));
     ground.shape.terrain->query(box_in(frame_of(ground.body), box), [&](std::uint32_t facet) {
         const PairKey key = PairKey::of(shape_a, shape_b, facet);
         if (!pairs.contains(key)) new_pairs.push_back(key);
@@ -221,7 +221,7 @@ bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
     if (c.facet == no_part) return true;
     const bool a_terrain = a.shape.kind == ShapeKind::terrain;
     const ShapeRecord<D>& ground = a_terrain ? a : b;
-    const Aabb<D> box = box_in(frame_of(ground.body), fat_box(a_terrain ? b : a));
+    const Aabb<D> box = box_in(frame_of(ground.body), widened(fat_box(a_terrain ? b : a)));
     return overlaps(box, ground.shape.terrain->facet(c.facet).bounds());
 }
 
@@ -257,7 +257,7 @@ void WorldState<D>::remove_visits_of(std::uint32_t shape) {
 }
 
 #define CAROM_INSTANTIATE(D)                                                             \
-    template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const;         \
+    template const OuterBox<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const;         \
     template void WorldState<D>::mark_moved(std::uint32_t);                              \
     template void WorldState<D>::insert_leaf(std::uint32_t);                             \
     template void WorldState<D>::remove_leaf(std::uint32_t);                             \

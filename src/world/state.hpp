@@ -173,7 +173,7 @@ struct WorldState {
     void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
     bool are_near(const ContactRecord<D>& contact) const;
     void set_surface(ContactRecord<D>& contact) const;
-    const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
+    const OuterBox<D>& fat_box(const ShapeRecord<D>& shape) const;
 
     // contacts.cpp: what is done about each contact, and where it is kept.
     void add_contact(const PairKey& key);

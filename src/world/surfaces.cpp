@@ -38,7 +38,7 @@ std::optional<FacePlane<D>> facing_plane(const Facet<D>& facet, const Vec<D>& di
 }
 
 template <int D>
-bool near_box(const Aabb<D>& box, const Vec<D>& point, double reach) {
+bool near_box(const OuterBox<D>& box, const Vec<D>& point, double reach) {
     for (int i = 0; i < D; ++i) {
         if (point[i] < box.lower[i] - reach || point[i] > box.upper[i] + reach) return false;
     }
