@@ -37,11 +37,15 @@ class Adjacency {
         }
     }
 
-    /// Calls `visit(link)` for each link of the node. Nothing may be added or removed meanwhile.
+    /// Calls `visit(link, other_node)` for each link of the node. Nothing may be added or removed meanwhile.
     template <class Visit>
     void each(std::uint32_t node, Visit&& visit) const {
         if (node >= first_.size()) return;
-        for (std::uint32_t i = first_[node]; i != none; i = links_[i / 2].end[i % 2].after) visit(i / 2);
+        for (std::uint32_t i = first_[node]; i != none;) {
+            const Link& link = links_[i / 2];
+            visit(i / 2, link.node[1 - i % 2]);
+            i = link.end[i % 2].after;
+        }
     }
 
   private:

@@ -64,10 +64,7 @@ class Forces {
     /// Visits the bodies that a spring ties to this one.
     template <class Visit>
     void each_tied(std::uint32_t body, Visit&& visit) const {
-        ties_.each(body, [&](std::uint32_t generator) {
-            const auto& spring = std::get<Spring<D>>(generators_[generator].definition.kind);
-            visit(spring.a->index == body ? spring.b.index : spring.a->index);
-        });
+        ties_.each(body, [&](std::uint32_t, std::uint32_t other) { visit(other); });
     }
 
     /// Visits every generator, and whether its timed impulse has been given.

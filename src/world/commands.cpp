@@ -42,6 +42,7 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.types.emplace_back();
         w.infos.emplace_back();
         w.applied.emplace_back();
+        w.tree_of.push_back(of_fixed);
         w.moving.push_back(stands_still);
         w.place.emplace_back();
         w.loads.emplace_back();
@@ -65,16 +66,29 @@ Shape<D> core_of(const Shape<D>& shape) {
 }
 
 template <int D>
+void make_into(WorldState<D>& w, std::uint32_t i, const ShapeDefinition<D>& definition, Shape<D> shape) {
+    ShapeRecord<D>& s = w.shapes[i];
+    const Filter& filter = definition.filter;
+    w.company[i] = {filter.category, filter.mask,       s.body,
+                    filter.group,    definition.sensor, shape.kind == ShapeKind::terrain};
+    s.shape = std::move(shape);
+    s.definition = definition;
+    s.core = core_of(s.shape);
+}
+
+template <int D>
 ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
                      Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) {
         w.shapes.emplace_back();
+        w.company.emplace_back();
+        w.fat_boxes.emplace_back();
         w.has_new_box.push_back(0);
         w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
     }
-    w.shapes[i] = {std::move(shape), definition, body};
-    w.shapes[i].core = core_of(w.shapes[i].shape);
+    w.shapes[i] = {{}, {}, body};
+    make_into(w, i, definition, std::move(shape));
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -119,6 +133,7 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
         w.movable.push_back(i);
         w.roused.push_back(i);
     }
+    w.tree_of[i] = w.tree_for(i);
     for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
     const auto id = w.body_slots.template id<BodyId<D>>(i);
     w.body_ids.push_back(id);
@@ -203,9 +218,7 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
         w.remove_contacts_of_shape(i);
         w.remove_visits_of(i);
     }
-    w.shapes[i].shape = std::move(made);
-    w.shapes[i].definition = definition;
-    w.shapes[i].core = core_of(w.shapes[i].shape);
+    make_into(w, i, definition, std::move(made));
     w.update_mass(body);
     w.forget_manifolds_of(body);
     w.remove_leaf(i);
@@ -352,6 +365,7 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         w.roused.push_back(i);
     }
     w.update_mass(i);
+    w.tree_of[i] = w.tree_for(i);
     for (const ShapeId<D>& id : w.infos[i].shapes) w.insert_leaf(id.index);
 }
 

@@ -142,10 +142,10 @@ void WorldState<D>::sense() {
     if (sensor_pairs.empty()) return placed_anew.clear();
     for (const std::uint32_t body : awake) {
         for (const ShapeId<D>& id : infos[body].shapes)
-            sensor_links.each(id.index, [&](std::uint32_t pair) { picked.push_back(pair); });
+            sensor_links.each(id.index, [&](std::uint32_t pair, std::uint32_t) { picked.push_back(pair); });
     }
     for (const std::uint32_t shape : placed_anew) {
-        sensor_links.each(shape, [&](std::uint32_t pair) {
+        sensor_links.each(shape, [&](std::uint32_t pair, std::uint32_t) {
             if (sensor_pairs[pair].placed_anew) picked.push_back(pair);
         });
     }

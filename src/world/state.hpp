@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "carom/world.hpp"
+#include "collision/sweep.hpp"
 #include "collision/tree.hpp"
 #include "core/adjacency.hpp"
 #include "core/pair_set.hpp"
@@ -25,8 +27,20 @@ struct ShapeRecord {
     ShapeDefinition<D> definition;
     std::uint32_t body = 0;
     Shape<D> core{};                    ///< of a convex shape: a ball half as large as fits into it
-    std::int32_t leaf = Tree<D>::none;  ///< in the tree of fixed or of moving things, by the body's type
-    bool in_fixed_tree = false;
+    std::int32_t leaf = Tree<D>::none;  ///< in the tree that its body says
+};
+
+/// The trees of shapes: what rests is kept apart, as nothing about it changes, and what moves is often
+/// looked at as a whole.
+enum TreeKind : std::uint8_t { of_fixed, of_resting, of_moving };
+
+/// Whom a shape meets: what is asked of it for every neighbour.
+struct Company {
+    std::uint64_t category = 0, mask = 0;
+    std::uint32_t body = 0;
+    std::int32_t group = 0;
+    bool senses = false;     ///< it is a sensor
+    bool is_ground = false;  ///< it is a terrain
 };
 
 /// How a body moves in a step.
@@ -97,9 +111,14 @@ struct WorldState {
     // Shapes, by index.
     Slots shape_slots;
     std::vector<ShapeRecord<D>> shapes;
-    Tree<D> fixed_tree, moving_tree;
-    std::vector<std::uint32_t> moved_shapes;
-    std::vector<std::uint8_t> has_new_box;  ///< by shape: its fat box changed since pairs were last found
+    std::vector<Company> company;              ///< by shape
+    std::array<Tree<D>, 3> trees;              ///< of shapes, by `TreeKind`
+    std::vector<TreeKind> tree_of;             ///< by body: where its shapes are
+    std::vector<OuterBox<D>> fat_boxes;        ///< by shape
+    std::vector<std::uint8_t> has_new_box;     ///< by shape: its fat box changed since pairs were last found
+    std::vector<std::uint32_t> moved_shapes;   ///< those that have one
+    std::vector<std::uint32_t> moving_shapes;  ///< those of the bodies that move in this step
+    Sweep<D> crowd;
 
     Forces<D> forces;
 
@@ -161,19 +180,25 @@ struct WorldState {
     void finish_bodies();
     void quarantine(std::uint32_t body);
 
-    // pairs.cpp: who is near whom.
+    // boxes.cpp: where the shapes are.
     void refresh_boxes(double dt);
-    void drop_pairs();
-    void find_pairs();
+    void keep_in_boxes(double dt);
+    TreeKind tree_for(std::uint32_t body) const;
+    void change_tree(std::uint32_t body, TreeKind kind);
     void insert_leaf(std::uint32_t shape);
     void remove_leaf(std::uint32_t shape);
+    void set_box(std::uint32_t shape, const Aabb<D>& box);
     void mark_moved(std::uint32_t shape);
+
+    // pairs.cpp: who is near whom.
+    void drop_pairs();
+    void find_pairs();
+    void take_up_pairs();
+    void meet(std::uint32_t shape_a, std::uint32_t shape_b);
     bool may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const;
-    bool is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
     void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
-    bool are_near(const ContactRecord<D>& contact) const;
+    bool are_near(std::uint32_t contact, std::uint32_t shape_a, std::uint32_t shape_b) const;
     void set_surface(ContactRecord<D>& contact) const;
-    const OuterBox<D>& fat_box(const ShapeRecord<D>& shape) const;
 
     // contacts.cpp: what is done about each contact, and where it is kept.
     void add_contact(const PairKey& key);
@@ -249,7 +274,6 @@ struct WorldState {
     void each_tied(std::uint32_t body, const Visit& visit) const;
 
     // queries.cpp: questions between steps.
-    void keep_in_boxes(double dt);
     bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;
     Transform<D> placement_of(std::uint32_t shape) const { return frame_of(shapes[shape].body); }
     WorldHit<D> named(std::uint32_t shape, const CastHit<D>& hit) const;
@@ -280,16 +304,22 @@ struct WorldState {
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
     /// A shape has its contacts in two lists: those of which one body is fixed, and the others.
     static std::uint32_t contact_list(std::uint32_t shape, bool on_fixed) { return 2 * shape + on_fixed; }
+    static std::uint32_t shape_of_list(std::uint32_t list) { return list / 2; }
     /// Calls `visit(contact)` for each contact of the shape, or of the body that is or is not with a fixed
     /// one.
     template <class Visit>
     void each_contact_of_shape(std::uint32_t shape, const Visit& visit) const {
-        for (const bool on_fixed : {false, true}) contact_links.each(contact_list(shape, on_fixed), visit);
+        for (const bool on_fixed : {false, true}) {
+            contact_links.each(contact_list(shape, on_fixed),
+                               [&](std::uint32_t contact, std::uint32_t) { visit(contact); });
+        }
     }
     template <class Visit>
     void each_contact_of(std::uint32_t body, bool on_fixed, const Visit& visit) const {
-        for (const ShapeId<D>& id : infos[body].shapes)
-            contact_links.each(contact_list(id.index, on_fixed), visit);
+        for (const ShapeId<D>& id : infos[body].shapes) {
+            contact_links.each(contact_list(id.index, on_fixed),
+                               [&](std::uint32_t contact, std::uint32_t) { visit(contact); });
+        }
     }
     void remove_visit(std::size_t sensor_pair);
     void remove_picked_visits();

@@ -99,17 +99,19 @@ void WorldState<D>::list_moving() {
     awake.clear();
     before.clear();
     for (const std::uint32_t i : roused) {
-        if (moving[i] != stands_still || !is_moving(i) || infos[i].disabled) continue;
-        if (is_absurd(states[i]))
-            quarantine(i);
-        else
+        if (moving[i] != stands_still) continue;  // listed twice
+        if (tree_for(i) == of_moving && is_absurd(states[i])) quarantine(i);
+        if (tree_for(i) == of_moving)
             list_awake(i);
+        else
+            change_tree(i, tree_for(i));
     }
     roused.clear();
 }
 
 template <int D>
 void WorldState<D>::list_awake(std::uint32_t body) {
+    change_tree(body, of_moving);
     awake.push_back(body);
     before.push_back(states[body]);
     place[body] = static_cast<std::uint32_t>(awake.size() - 1);

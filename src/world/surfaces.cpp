@@ -108,14 +108,14 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
     };
     const auto covers = [&](const Vec<D>& at) {
         return std::any_of(first, last, [&](const FixedContact& other) {
-            return !is_own(other) && near_box(fat_box(shapes[other.other]), at, flush) &&
+            return !is_own(other) && near_box(fat_boxes[other.other], at, flush) &&
                    distance(other, at) <= flush;
         });
     };
     const auto reaches_out = [&](const FixedContact& other) {
         constexpr double rounding = 1e-7;
-        return !is_own(other) && near_box(fat_box(shapes[other.other]), p, flush) &&
-               distance(other, p) <= flush && distance(other, p + probe * n) < (1 - rounding) * probe;
+        return !is_own(other) && near_box(fat_boxes[other.other], p, flush) && distance(other, p) <= flush &&
+               distance(other, p + probe * n) < (1 - rounding) * probe;
     };
     if (std::none_of(first, last, reaches_out)) return false;
 

@@ -63,7 +63,7 @@ TYPED_TEST(SweepTest, finds_every_pair_once_with_any_lane_width) {
         set_lane_width(width);
         Sweep<D> sweep;
         Random random(17);
-        for (const std::uint32_t count : {0u, 1u, 2u, 3u, 17u, 100u, 500u, 1500u}) {
+        for (const std::uint32_t count : {0u, 1u, 2u, 3u, 17u, 100u, 600u}) {
             for (const double stretch : {1e-3, 1.0, 50.0}) {
                 for (const double largest : {0.0, 0.3, 3.0}) {
                     const Crowd<D> crowd(random, count, stretch, largest);

@@ -11,7 +11,7 @@ namespace {
 
 std::multiset<std::uint32_t> links_of(const Adjacency& adjacency, std::uint32_t node) {
     std::multiset<std::uint32_t> found;
-    adjacency.each(node, [&](std::uint32_t link) { found.insert(link); });
+    adjacency.each(node, [&](std::uint32_t link, std::uint32_t) { found.insert(link); });
     return found;
 }
 
@@ -55,6 +55,9 @@ TEST(Adjacency, AgreesWithAMap) {
                 if (ends.first == node || ends.second == node) expected.insert(link);
             }
             ASSERT_EQ(links_of(adjacency, node), expected) << "node " << node << ", change " << i;
+            adjacency.each(node, [&](std::uint32_t link, std::uint32_t other) {
+                ASSERT_EQ(links[link].first + links[link].second, node + other);
+            });
         }
     }
 }
