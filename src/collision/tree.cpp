@@ -201,6 +201,21 @@ void Tree<D>::refit_upwards(std::int32_t node, bool rotate) {
 }
 
 template <int D>
+void Tree<D>::refit() {
+    downwards_.clear();
+    if (root_ != none && !nodes_[root_].leaf()) downwards_.push_back(root_);
+    for (std::size_t i = 0; i < downwards_.size(); ++i) {
+        for (const std::int32_t child : nodes_[downwards_[i]].child) {
+            if (!nodes_[child].leaf()) downwards_.push_back(child);
+        }
+    }
+    for (auto node = downwards_.rbegin(); node != downwards_.rend(); ++node) {
+        enclose_children(*node);
+        rotate_at(*node);
+    }
+}
+
+template <int D>
 void Tree<D>::build(std::span<const Entry> entries) {
     clear();
     leaf_count_ = std::int32_t(entries.size());

@@ -9,9 +9,10 @@ namespace carom::detail {
 
 namespace {
 
-/// Boxes are made this much fatter than the shape, or an eighth of its size where that is less, so that a
-/// body that hardly moves keeps its box.
-constexpr double box_margin = 0.05;
+/// Boxes are made this much fatter than the shape, or this share of its size where that is less, so that a
+/// body that hardly moves keeps its box. A crowd pays more for neighbours that do not touch than for new
+/// boxes, so this is little.
+constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
 
 template <int D>
 Aabb<D> grown(const Aabb<D>& box, double margin, const Vec<D>& motion) {
@@ -75,6 +76,7 @@ void WorldState<D>::set_box(std::uint32_t shape, const Aabb<D>& box) {
 template <int D>
 void WorldState<D>::refresh_boxes(double dt) {
     moving_shapes.clear();
+    new_leaves.clear();
     const double falling = length(definition.gravity) * dt * dt;
     for (const std::uint32_t body : awake) {
         const Transform<D> placed = frame_of(body);
@@ -95,8 +97,18 @@ void WorldState<D>::refresh_boxes(double dt) {
             const Vec<D> size = tight.upper - tight.lower;
             double smallest = size.x;
             for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
-            set_box(id.index, grown(swept, std::min(box_margin, 0.125 * smallest), way));
+            const double margin = std::min(box_margin, margin_share * smallest);
+            fat_boxes[id.index] = grown(swept, margin, Vec<D>{});
+            mark_moved(id.index);
+            new_leaves.push_back(shapes[id.index].leaf);
         }
+    }
+    Tree<D>& tree = trees[of_moving];
+    const auto box_of = [&](std::uint32_t shape) -> const OuterBox<D>& { return fat_boxes[shape]; };
+    if (10 * new_leaves.size() > static_cast<std::size_t>(tree.size())) {
+        tree.move_all(new_leaves, box_of);
+    } else {
+        for (const std::int32_t leaf : new_leaves) tree.move(leaf, box_of(tree.payload(leaf)));
     }
 }
 

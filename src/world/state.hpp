@@ -118,6 +118,7 @@ struct WorldState {
     std::vector<std::uint8_t> has_new_box;     ///< by shape: its fat box changed since pairs were last found
     std::vector<std::uint32_t> moved_shapes;   ///< those that have one
     std::vector<std::uint32_t> moving_shapes;  ///< those of the bodies that move in this step
+    std::vector<std::int32_t> new_leaves;      ///< leaves of moving shapes with new boxes
     Sweep<D> crowd;
 
     Forces<D> forces;

@@ -154,6 +154,37 @@ TYPED_TEST(TreeTest, building_numbers_the_leaves_like_the_entries) {
     }
 }
 
+TYPED_TEST(TreeTest, moves_many_at_once_and_stays_good) {
+    constexpr int D = TypeParam::value;
+    Random random(8);
+    Tree<D> tree;
+    Boxes<D> boxes;
+    std::vector<std::int32_t> leaves;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+        boxes[i] = random_box<D>(random, 10, 0.5);
+        leaves.push_back(tree.insert(boxes[i], i));
+    }
+    for (int round = 0; round < 200; ++round) {
+        std::vector<std::int32_t> moved;
+        for (std::uint32_t i = 0; i < 400; ++i) {
+            if (random.below(3) == 0) continue;
+            const Vec<D> shift = random.in_cube<D>(random.below(20) == 0 ? 3 : 0.2);
+            const Aabb<D> box = widened(boxes[i]);
+            boxes[i] = Aabb<D>{box.lower + shift, box.upper + shift};
+            moved.push_back(leaves[i]);
+        }
+        tree.move_all(moved, [&](std::uint32_t payload) -> const OuterBox<D>& { return boxes[payload]; });
+        if (round % 20 == 0) expect_same_answers(tree, boxes, random);
+    }
+    expect_same_answers(tree, boxes, random);
+    const double moved = tree.cost();
+    tree.rebuild();
+    EXPECT_LE(moved, 1.3 * tree.cost());
+    tree.clear();
+    tree.move_all({}, [&](std::uint32_t payload) -> const OuterBox<D>& { return boxes[payload]; });
+    EXPECT_TRUE(tree.validate());
+}
+
 TYPED_TEST(TreeTest, holds_infinite_and_equal_boxes) {
     constexpr int D = TypeParam::value;
     Random random(5);
