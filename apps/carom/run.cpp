@@ -69,6 +69,7 @@ io::RunSummary simulate(const RunOptions& options, const io::Scene& scene) {
     using Clock = std::chrono::steady_clock;
     io::SceneWorld<D> built = io::build<D>(scene);
     World<D>& world = built.world;
+    if (options.threads > 1) world.set_scheduler(make_thread_pool(options.threads));
     Outputs<D> outputs(options, scene, built);
 
     io::RunSummary summary{scene.name, D};
@@ -123,11 +124,9 @@ void add_run(CLI::App& program, int& status) {
     command->add_option("--steps", options->steps, "How many steps")
         ->capture_default_str()
         ->check(CLI::Range(0, 100'000'000).description(""));
-    command
-        ->add_option("--threads", options->threads,
-                     "Most threads to use; this version uses one whatever is given")
+    command->add_option("--threads", options->threads, "Threads to use")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1024).description(""));
+        ->check(CLI::Range(1, 256).description(""));
     command->add_option("--trace", options->trace, "Write a row a body a step to FILE, comma-separated")
         ->type_name("FILE.csv");
     command

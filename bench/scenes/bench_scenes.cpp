@@ -14,6 +14,7 @@ std::span<const BenchScene> bench_scenes() {
         {"many_pyramids_3", 100, many_pyramids<3>},
         {"convex_pile_3", 500, convex_pile},
         {"sleeping_city_3", 500, sleeping_city<3>},
+        {"convex_vs_mesh_3", 500, convex_vs_mesh, true},
         {"large_world_3", 500, large_world},
         {"wide_pyramid_3", 500, wide_pyramid},
         {"pyramid_3", 500, pyramid, true},

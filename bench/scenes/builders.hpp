@@ -13,6 +13,7 @@ BenchWorld<2> smash();
 BenchWorld<3> convex_pile();
 template <int D>
 BenchWorld<D> sleeping_city();
+BenchWorld<3> convex_vs_mesh();
 BenchWorld<3> large_world();
 BenchWorld<3> wide_pyramid();
 BenchWorld<3> pyramid();

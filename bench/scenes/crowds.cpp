@@ -89,6 +89,46 @@ BenchWorld<D> sleeping_city() {
 template BenchWorld<2> sleeping_city();
 template BenchWorld<3> sleeping_city();
 
+BenchWorld<3> convex_vs_mesh() {
+    constexpr int cells = 100;
+    constexpr double cell = 3;
+    BenchWorld<3> bench{World<3>(WorldDefinition<3>{})};  // with the gravity of the Earth
+    Mesh hills;
+    for (int x = 0; x <= cells; ++x)
+        for (int z = 0; z <= cells; ++z)
+            hills.vertices.push_back({cell * x,
+                                      5 * Rotation2::from_angle(0.5 * x).s * Rotation2::from_angle(0.5 * z).c,
+                                      cell * z});
+    const auto vertex = [](int x, int z) { return static_cast<std::uint32_t>(x * (cells + 1) + z); };
+    for (int x = 0; x < cells; ++x)
+        for (int z = 0; z < cells; ++z) {
+            hills.triangles.push_back({vertex(x, z), vertex(x, z + 1), vertex(x + 1, z)});
+            hills.triangles.push_back({vertex(x + 1, z), vertex(x, z + 1), vertex(x + 1, z + 1)});
+        }
+    const auto make = [](const Geometry<3>& geometry) {
+        BodyDefinition<3> body;
+        ShapeDefinition<3>& shape = body.shapes.emplace_back();
+        shape.geometry = geometry;
+        shape.material = {.density = 1000, .friction = 0.5, .restitution = 0.6};
+        body.linear_damping = body.angular_damping = 0.05;
+        return body;
+    };
+    BodyDefinition<3> ground = make(hills);
+    ground.type = BodyType::fixed;
+    ground.position = {-0.5 * cell * cells, 5, -0.5 * cell * cells};
+    bench.world.add_body(ground);
+    BodyDefinition<3> layers[] = {make(Box<3>{{1, 1.5, 2}}), make(Ball{0.5}),
+                                  make(Capsule<3>{{0, -0.75, 0}, {0, 0.75, 0}, 0.5}),
+                                  make(Hull<3>{{{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}})};
+    for (int x = -10; x <= 10; ++x)
+        for (int y = 0; y < 4; ++y)
+            for (int z = -10; z <= 10; ++z) {
+                layers[y].position = {7.5 * x, 15.0 + 2 * y, 7.5 * z};
+                bench.world.add_body(layers[y]);
+            }
+    return bench;
+}
+
 BenchWorld<3> large_world() {
     constexpr int side = 1000;        // floor tiles
     constexpr int dropped_side = 10;  // balls

@@ -13,6 +13,7 @@
 #include "carom/mass.hpp"
 #include "carom/queries.hpp"
 #include "carom/rotation.hpp"
+#include "carom/scheduler.hpp"
 #include "carom/shapes.hpp"
 #include "carom/transform.hpp"
 #include "carom/vec.hpp"

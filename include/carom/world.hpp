@@ -12,6 +12,7 @@
 #include "carom/events.hpp"
 #include "carom/forces.hpp"
 #include "carom/queries.hpp"
+#include "carom/scheduler.hpp"
 
 namespace carom {
 
@@ -103,6 +104,7 @@ struct WorldState;
 /// takes a definition throws `Error` when that cannot be simulated; the world is then as before the call.
 ///
 /// The result of a step depends on the calls alone: the same calls give the same bits on every machine.
+/// The number of threads that steps use changes nothing either (see `set_scheduler`).
 /// One world is used by one thread at a time; const functions may run on several at once.
 template <int D>
 class World {
@@ -116,6 +118,10 @@ class World {
     /// The settings; `set_gravity` wakes every body.
     const WorldDefinition<D>& definition() const;
     void set_gravity(const Vec<D>& gravity);
+    /// Where steps do their work from now on: a pool (`make_thread_pool`), the game's own scheduler, or, as
+    /// at first and with null, the thread that calls `step`. Worlds with little to do stay on that one
+    /// anyway.
+    void set_scheduler(std::shared_ptr<Scheduler> scheduler);
 
     /// Adds a body with its shapes.
     BodyId<D> add_body(const BodyDefinition<D>& definition);

@@ -19,7 +19,7 @@ constexpr double backward_slack = 1e-6;
 /// face of each of the two.
 template <int D>
 Manifold<D> collide_facet(const Shape<D>& convex, const Facet<D>& facet, const Transform<D>& placed,
-                          double reach);
+                          double reach, const Vec<D>& axis = {});
 
 /// Gap or depth of a shape and one facet (see `separate_shapes`), and the direction from the facet to the
 /// shape. Nothing when the facet does not meet the shape, however near it may be.
@@ -31,7 +31,7 @@ std::optional<Separation<D>> separate_facet(const Shape<D>& convex, const Facet<
 /// of equals, the one that the terrain names first.
 template <int D>
 Manifold<D> collide_terrain(const Shape<D>& a, const Shape<D>& terrain, const Transform<D>& terrain_in_a,
-                            double reach);
+                            double reach, const Vec<D>& axis);
 template <int D>
 std::optional<Separation<D>> separate_from_terrain(const Shape<D>& a, const Shape<D>& terrain,
                                                    const Transform<D>& terrain_in_a);

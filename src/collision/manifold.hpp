@@ -15,8 +15,19 @@ namespace carom::detail {
 /// midway between the two surfaces, and `separation` is the gap there along the normal. It is empty when the
 /// gap between the shapes is larger than `reach` (m, not negative) and for two of plane and terrain. The
 /// kinds may come in either order; the feature ids of a pair of shapes are the same in both.
+///
+/// An `axis` that is not zero says along which direction, about a unit vector, the shapes were apart or
+/// touched when they were last collided. If it still holds them apart, that is known at once. An empty
+/// manifold may have a normal: the axis for next time; then the separation of its first point is the gap
+/// along it.
 template <int D>
-Manifold<D> collide_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach);
+Manifold<D> collide_shapes(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach,
+                           const Vec<D>& axis = {});
+
+/// The gap between two convex shapes along `axis` (of any length): they are at least so far apart. Minus
+/// infinity for an axis of zero and for planes and terrains.
+template <int D>
+double gap_along(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, const Vec<D>& axis);
 
 /// Where the shapes are apart: the direction from a to b between their closest points, and the gap. Where
 /// they overlap: the direction in which b has the shortest way out of a, and minus the length of that way.
@@ -28,7 +39,8 @@ std::optional<Separation<D>> separate_shapes(const Shape<D>& a, const Shape<D>& 
 /// The two questions above for one pair of kinds: an entry of the shape-pair matrix.
 template <int D>
 struct PairRoutines {
-    Manifold<D> (*collide)(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach);
+    Manifold<D> (*collide)(const Shape<D>& a, const Shape<D>& b, const Transform<D>& b_in_a, double reach,
+                           const Vec<D>& axis);
     std::optional<Separation<D>> (*separate)(const Shape<D>& a, const Shape<D>& b,
                                              const Transform<D>& b_in_a);
 };
@@ -40,6 +52,15 @@ template <>
 const PairRoutines<2>& pair_routines<2>(ShapeKind a, ShapeKind b);
 template <>
 const PairRoutines<3>& pair_routines<3>(ShapeKind a, ShapeKind b);
+
+/// An empty manifold of shapes that are `gap` apart along the axis.
+template <int D>
+Manifold<D> apart_along(const Vec<D>& axis, double gap) {
+    Manifold<D> manifold;
+    manifold.normal = axis;
+    manifold.points[0].separation = gap;
+    return manifold;
+}
 
 /// The placement that undoes `t`.
 template <int D>

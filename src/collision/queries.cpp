@@ -89,7 +89,8 @@ Manifold<D> collide(const Solid<D>& a, const Transform<D>& a_placed, const Solid
     if (!(reach >= 0)) detail::refuse("reach", reach, "is negative or not a number");
     const Transform<D> b_in_a = checked_relative(a_placed, b_placed);
     const Transform<D> a_unit{a_placed.position, normalized(a_placed.rotation)};
-    return detail::moved(detail::collide_shapes(a.shape(), b.shape(), b_in_a, reach), a_unit);
+    const Manifold<D> found = detail::collide_shapes(a.shape(), b.shape(), b_in_a, reach);
+    return found.count > 0 ? detail::moved(found, a_unit) : Manifold<D>{};
 }
 
 template <int D>

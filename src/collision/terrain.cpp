@@ -43,7 +43,7 @@ std::optional<NearestFacet<D>> nearest_facet(const Shape<D>& convex, const Terra
 
 template <int D>
 Manifold<D> collide_terrain(const Shape<D>& a, const Shape<D>& terrain, const Transform<D>& terrain_in_a,
-                            double reach) {
+                            double reach, const Vec<D>&) {
     const Transform<D> placed = inverse(terrain_in_a);
     const auto nearest = nearest_facet(a, *terrain.terrain, placed, reach);
     if (!nearest) return {};
@@ -61,8 +61,10 @@ std::optional<Separation<D>> separate_from_terrain(const Shape<D>& a, const Shap
                          nearest->separation.distance};
 }
 
-template Manifold<2> collide_terrain(const Shape<2>&, const Shape<2>&, const Transform<2>&, double);
-template Manifold<3> collide_terrain(const Shape<3>&, const Shape<3>&, const Transform<3>&, double);
+template Manifold<2> collide_terrain(const Shape<2>&, const Shape<2>&, const Transform<2>&, double,
+                                     const Vec2&);
+template Manifold<3> collide_terrain(const Shape<3>&, const Shape<3>&, const Transform<3>&, double,
+                                     const Vec3&);
 template std::optional<Separation<2>> separate_from_terrain(const Shape<2>&, const Shape<2>&,
                                                             const Transform<2>&);
 template std::optional<Separation<3>> separate_from_terrain(const Shape<3>&, const Shape<3>&,

@@ -60,6 +60,9 @@ struct HullTriangle {
 /// convex, coplanar triangles included. Empty when the points lie in a plane, within the tolerance.
 std::vector<HullTriangle> quickhull(const std::vector<LatticePoint>& points, double tolerance);
 
+/// Measures a polyhedron that has its corners and faces: middle, extent and unevenness.
+void measure(Polyhedron& polyhedron);
+
 /// Finds the edges of a polyhedron that has its corners and faces. False when the faces do not close a
 /// surface.
 bool connect(Polyhedron& polyhedron);

@@ -259,6 +259,23 @@ std::vector<LatticePoint> on_lattice(const std::vector<Vec3>& points, double ext
 
 }  // namespace
 
+void measure(Polyhedron& polyhedron) {
+    polyhedron.middle = {};
+    for (const Vec3& vertex : polyhedron.vertices) polyhedron.middle += vertex;
+    polyhedron.middle = polyhedron.middle / double(polyhedron.vertices.size());
+    double square = 0;
+    for (const Vec3& vertex : polyhedron.vertices)
+        square = std::max(square, length_squared(vertex - polyhedron.middle));
+    polyhedron.extent = std::sqrt(square);
+    polyhedron.unevenness = 0;
+    for (std::size_t f = 0; f < polyhedron.normals.size(); ++f) {
+        for (const Vec3& vertex : polyhedron.vertices) {
+            const double height = dot(polyhedron.normals[f], vertex) - polyhedron.offsets[f];
+            polyhedron.unevenness = std::max(polyhedron.unevenness, height);
+        }
+    }
+}
+
 bool connect(Polyhedron& polyhedron) {
     struct Side {
         std::uint32_t low, high, from, face;

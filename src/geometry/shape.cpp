@@ -1,6 +1,9 @@
 #include "geometry/shape.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
+#include <span>
 
 #include "geometry/hull.hpp"
 #include "geometry/terrain.hpp"
@@ -60,6 +63,7 @@ Polyhedron box_core(const Transform3& placed, const Vec3& half) {
     box.indices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
     box.first = {0, 4, 8, 12, 16, 20, 24};
     connect(box);
+    measure(box);
     return box;
 }
 
@@ -102,26 +106,59 @@ void fill(Shape<D>& shape, const Box<D>& box, const Transform<D>& placed) {
 }
 
 template <int D>
+Polytope<D> hull_core(const std::vector<Vec<D>>& points, const Transform<D>& placed) {
+    Polytope<D> core;
+    if constexpr (D == 2) {
+        core = convex_polygon(points);
+    } else {
+        core = convex_polyhedron(points);
+        for (std::size_t i = 0; i < core.normals.size(); ++i)
+            core.offsets[i] += dot(rotate(placed.rotation, core.normals[i]), placed.position);
+    }
+    for (Vec<D>& normal : core.normals) normal = rotate(placed.rotation, normal);
+    for (Vec<D>& vertex : core.vertices) vertex = apply(placed, vertex);
+    if constexpr (D == 3) {
+        measure(core);
+        core.corners = Columns(core.vertices);
+        core.faces = Columns(core.normals);
+    }
+    return core;
+}
+
+/// Worlds are full of equal hulls, mostly added one after the other: those share what they are made of, as
+/// long as one of them exists.
+template <int D>
+std::shared_ptr<const Polytope<D>> shared_hull_core(const std::vector<Vec<D>>& points,
+                                                    const Transform<D>& placed) {
+    struct Recent {
+        std::vector<Vec<D>> points;
+        Transform<D> placed;
+        std::weak_ptr<const Polytope<D>> core;
+    };
+    thread_local std::array<Recent, 8> recent;
+    thread_local std::size_t oldest = 0;
+    const auto same_bits = [](const auto& a, const auto& b) {
+        return a.size_bytes() == b.size_bytes() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+    };
+    for (const Recent& r : recent) {
+        auto core = r.core.lock();
+        if (core && same_bits(std::span(r.points), std::span(points)) &&
+            same_bits(std::span(&r.placed, 1), std::span(&placed, 1)))
+            return core;
+    }
+    const auto core = std::make_shared<const Polytope<D>>(hull_core<D>(points, placed));
+    recent[oldest] = {points, placed, core};
+    oldest = (oldest + 1) % recent.size();
+    return core;
+}
+
+template <int D>
 void fill(Shape<D>& shape, const Hull<D>& hull, const Transform<D>& placed) {
     require_not_negative(hull.rounding, "rounding");
     require_in(hull.rounding, 0, longest_length, "rounding");
-    Polytope<D> core;
-    if constexpr (D == 2) {
-        core = convex_polygon(hull.points);
-    } else {
-        core = convex_polyhedron(hull.points);
-        for (std::size_t i = 0; i < core.normals.size(); ++i) {
-            core.normals[i] = rotate(placed.rotation, core.normals[i]);
-            core.offsets[i] += dot(core.normals[i], placed.position);
-        }
-    }
-    if constexpr (D == 2) {
-        for (Vec2& normal : core.normals) normal = rotate(placed.rotation, normal);
-    }
-    for (Vec<D>& vertex : core.vertices) vertex = apply(placed, vertex);
     shape.kind = ShapeKind::hull;
     shape.radius = hull.rounding;
-    shape.core = std::make_shared<const Polytope<D>>(std::move(core));
+    shape.core = shared_hull_core<D>(hull.points, placed);
 }
 
 template <int D>
@@ -162,19 +199,32 @@ const Ground&,
     shape.terrain = std::make_shared<const Terrain<D>>(ground, placed);
 }
 
-/// The corner of the polytope that lies furthest along the direction; the first of several.
 template <int D>
-Vec<D> furthest_corner(const Polytope<D>& core, const Vec<D>& direction) {
-    const Vec<D>* best = &core.vertices.front();
-    double furthest = dot(*best, direction);
-    for (const Vec<D>& vertex : core.vertices) {
-        const double distance = dot(vertex, direction);
+std::size_t furthest_of(const std::vector<Vec<D>>& points, const Vec<D>& direction) {
+    std::size_t best = 0;
+    double furthest = dot(points[0], direction);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const double distance = dot(points[i], direction);
         if (distance > furthest) {
             furthest = distance;
-            best = &vertex;
+            best = i;
         }
     }
-    return *best;
+    return best;
+}
+
+/// The least and the greatest product of a corner with the axis.
+template <int D>
+std::array<double, 2> range_of(const Polytope<D>& core, const Vec<D>& axis) {
+    if constexpr (D == 3)
+        if (!core.corners.empty()) return core.corners.range(axis);
+    double lowest = 1e300, highest = -1e300;
+    for (const Vec<D>& vertex : core.vertices) {
+        const double distance = dot(axis, vertex);
+        lowest = std::min(lowest, distance);
+        highest = std::max(highest, distance);
+    }
+    return {lowest, highest};
 }
 
 Vec3 round_support(const Shape<3>& shape, const Vec3& direction) {
@@ -205,12 +255,7 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
         }
         case ShapeKind::hull:
         case ShapeKind::facet: {
-            double lowest = 1e300, highest = -1e300;
-            for (const Vec<D>& vertex : shape.core->vertices) {
-                const double distance = dot(axis, vertex);
-                lowest = std::min(lowest, distance);
-                highest = std::max(highest, distance);
-            }
+            const auto [lowest, highest] = range_of<D>(*shape.core, axis);
             return {lowest - shape.radius, highest + shape.radius};
         }
         case ShapeKind::box: {
@@ -295,7 +340,7 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
             return dot(shape.b - shape.a, direction) > 0 ? shape.b : shape.a;
         case ShapeKind::hull:
         case ShapeKind::facet:
-            return furthest_corner<D>(*shape.core, direction);
+            return shape.core->vertices[furthest_corner(*shape.core, direction)];
         case ShapeKind::box: {
             const Vec<D> local = unrotate(shape.rotation, direction);
             Vec<D> corner = shape.b;
@@ -311,6 +356,13 @@ Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction) {
             break;
     }
     return {};
+}
+
+std::size_t furthest_corner(const Polygon& core, const Vec2& direction) {
+    return furthest_of<2>(core.vertices, direction);
+}
+std::size_t furthest_corner(const Polyhedron& core, const Vec3& direction) {
+    return core.corners.empty() ? furthest_of<3>(core.vertices, direction) : core.corners.furthest(direction);
 }
 
 template <int D>

@@ -8,6 +8,7 @@
 
 #include "carom/mass.hpp"
 #include "carom/shapes.hpp"
+#include "geometry/columns.hpp"
 
 namespace carom::detail {
 
@@ -37,6 +38,11 @@ struct Polyhedron {
     std::vector<std::uint32_t> indices;
     std::vector<std::uint32_t> first;  ///< one more than there are faces
     std::vector<Edge> edges;
+    Vec3 middle{};          ///< mean of the corners
+    double extent = 0;      ///< from the middle to the corner furthest from it
+    double unevenness = 0;  ///< by how much corners stand out of faces
+    Columns corners;        ///< the vertices once more, where there are many
+    Columns faces;          ///< the normals once more, where there are many
 };
 
 template <int D>
@@ -80,6 +86,10 @@ Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed);
 /// without `radius` for ball, capsule, box and hull (their core only). Not for planes and terrains.
 template <int D>
 Vec<D> core_support(const Shape<D>& shape, const Vec<D>& direction);
+
+/// The index of the corner that lies furthest along the direction; the first of several.
+std::size_t furthest_corner(const Polygon& core, const Vec2& direction);
+std::size_t furthest_corner(const Polyhedron& core, const Vec3& direction);
 
 /// A point about in the middle of a convex shape, in the frame of its body.
 template <int D>

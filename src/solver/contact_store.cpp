@@ -192,7 +192,9 @@ void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
     std::uint8_t& traits = traits_[index / width()];
     if (record.rolling > 0) traits |= some_rolling;
     if (record.roundness_a != 0 || record.roundness_b != 0) traits |= some_round;
-    if (record.restitution != 0) traits |= some_bouncy;
+    if (record.restitution == 0) return;
+    traits |= some_bouncy;
+    some_bounce_ = true;
 }
 
 template <int D>

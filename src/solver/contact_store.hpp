@@ -52,6 +52,8 @@ class ContactStore {
     LaneStore<Rows>& rows() { return rows_; }
     const LaneStore<Rows>& rows() const { return rows_; }
     float restitution(std::uint32_t index) const;
+    /// Can it be that some contact has restitution?
+    bool some_bounce() const { return some_bounce_; }
     std::uint32_t contact(std::size_t index) const { return contact_[index]; }
     void rename(std::uint32_t index, std::uint32_t contact) { contact_[index] = contact; }
     std::uint32_t a(std::size_t index) const { return a_[index]; }
@@ -72,6 +74,7 @@ class ContactStore {
 
     const Passes<D>* passes_ = nullptr;
     std::size_t size_ = 0;
+    bool some_bounce_ = false;
     LaneStore<Rows> rows_;
     LaneStore<Marks> marks_;
     std::vector<std::uint32_t> a_, b_, body_a_, body_b_;  ///< by lane

@@ -4,25 +4,44 @@
 namespace carom::detail {
 
 template <int D>
-void Solver<D>::load_bodies(const SolverInput<D>& input) {
-    const std::uint32_t slots = slots_.size();
-    const std::size_t blocks = drives_.blocks_for(slots), lanes = blocks * drives_.width();
+void Solver<D>::make_room() {
+    const std::size_t blocks = drives_.blocks_for(slots_.size());
     drives_.resize(blocks);
-    records_.resize(lanes * body_stride<D>);
+    records_.resize(blocks * drives_.width() * body_stride<D>);
     view_.records = records_.data();
+    sums_begun_ = false;
+    for (Section& s : sections_) {
+        s.waiting.resize(s.contacts.blocks());
+        s.hit.clear();
+    }
+}
 
-    const auto is_locked = [](const Locks& locks) { return locks.x || locks.y || locks.z; };
-    bool some_locked = false;
-    const auto is_loaded = [&](std::uint32_t slot) {
-        return slot != BodySlots::still && slot < slots && slots_.body(slot) != BodySlots::none &&
-               touching_[slot] > 0;
-    };
-    for (std::uint32_t slot = 1; slot < slots; ++slot)
-        some_locked |= is_loaded(slot) && is_locked(input.masses[slots_.body(slot)].locks);
-    free_axes_.assign(some_locked ? lanes * 4 : 0, 1);
-    view_.free_axes = some_locked ? free_axes_.data() : nullptr;
+template <int D>
+bool Solver<D>::is_loaded(std::uint32_t slot) const {
+    return slot != BodySlots::still && slot < slots_.size() && slots_.body(slot) != BodySlots::none &&
+           touching_[slot] > 0;
+}
 
-    for (std::uint32_t slot = 0; slot < lanes; ++slot) {
+template <int D>
+void Solver<D>::set_free_axes(const SolverInput<D>& input) {
+    view_.free_axes = nullptr;
+    if (!input.some_locked) return;
+    free_axes_.assign(drives_.blocks_for(slots_.size()) * drives_.width() * 4, 1);
+    view_.free_axes = free_axes_.data();
+    Vec<D> ones;
+    for (int i = 0; i < D; ++i) ones[i] = 1;
+    for (std::uint32_t slot = 1; slot < slots_.size(); ++slot) {
+        if (!is_loaded(slot)) continue;
+        const Vec<D> axes = free_components<D>(input.masses[slots_.body(slot)].locks, ones);
+        for (int i = 0; i < D; ++i) free_axes_[slot * 4 + i] = static_cast<float>(axes[i]);
+    }
+}
+
+template <int D>
+void Solver<D>::load_bodies(const SolverInput<D>& input, const Crew& crew) {
+    const Part part = crew.part(drives_.blocks_for(slots_.size()), 4);
+    const auto width = static_cast<std::uint32_t>(drives_.width());
+    for (auto slot = static_cast<std::uint32_t>(part.begin) * width; slot < part.end * width; ++slot) {
         if (is_loaded(slot)) {
             load_body(input, slot);
         } else {
@@ -30,6 +49,7 @@ void Solver<D>::load_bodies(const SolverInput<D>& input) {
             write_record(view_, slot, Body<D, float>{});
         }
     }
+    crew.meet();
 }
 
 /// The record is given no velocity yet: first it collects what the kept impulses make (see `begin_warm`).
@@ -48,12 +68,6 @@ void Solver<D>::load_body(const SolverInput<D>& input, std::uint32_t slot) {
         const Inertia<D> inertia = world_inverse_inertia<D>(mass, state.rotation);
         body.inverse_mass = static_cast<float>(mass.inverse_mass);
         body.weight.inertia = narrow<float>(inertia);
-        if (view_.free_axes) {
-            Vec<D> ones;
-            for (int i = 0; i < D; ++i) ones[i] = 1;
-            const Vec<D> axes = free_components<D>(mass.locks, ones);
-            for (int i = 0; i < D; ++i) free_axes_[slot * 4 + i] = static_cast<float>(axes[i]);
-        }
         // The gyroscopic term: what the spin would do by itself through the step, spread evenly over it.
         const Angular<D> coasting = coasting_spin<D>(state, mass, input.step) - state.angular_velocity;
         drive.acceleration =
@@ -71,20 +85,23 @@ void Solver<D>::load_body(const SolverInput<D>& input, std::uint32_t slot) {
 }
 
 template <int D>
-void Solver<D>::prepare_contacts() {
-    each_section([&](Section& s) {
-        passes_of(s).prepare(s.contacts.span(), view_);
-        s.waiting.clear();
-        for (std::size_t block = 0; block < s.contacts.blocks(); ++block)
-            s.waiting.push_back(s.contacts.found(block));
-        s.hit.clear();
-    });
+void Solver<D>::prepare_contacts(const Crew& crew) {
+    each_share(crew, true,
+               [&](const Passes<D>& passes, const BlockSpan<D>& span) { passes.prepare(span, view_); });
+    if (crew.is_first()) {
+        each_section([](Section& s) {
+            for (std::size_t block = 0; block < s.contacts.blocks(); ++block)
+                s.waiting[block] = s.contacts.found(block);
+        });
+    }
 }
 
 template <int D>
-void Solver<D>::store_bodies(const SolverInput<D>& input) const {
-    for (std::uint32_t slot = view_.first_movable; slot < slots_.size(); ++slot) {
-        if (touching_[slot] == 0) continue;
+void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) const {
+    const Part part = crew.part(slots_.size() - view_.first_movable, 64);
+    for (std::size_t k = part.begin; k < part.end; ++k) {
+        const auto slot = static_cast<std::uint32_t>(view_.first_movable + k);
+        if (!is_loaded(slot)) continue;
         BodyState<D>& state = input.states[slots_.body(slot)];
         const Motion<D, float> m = gather<float>(view_, &slot).motion;
         const Drive<D, float> drive = drives_.get(slot);
@@ -95,10 +112,12 @@ void Solver<D>::store_bodies(const SolverInput<D>& input) const {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                     \
-    template void Solver<D>::load_bodies(const SolverInput<D>&); \
-    template void Solver<D>::prepare_contacts();                 \
-    template void Solver<D>::store_bodies(const SolverInput<D>&) const;
+#define CAROM_INSTANTIATE(D)                                                  \
+    template void Solver<D>::make_room();                                     \
+    template void Solver<D>::set_free_axes(const SolverInput<D>&);            \
+    template void Solver<D>::load_bodies(const SolverInput<D>&, const Crew&); \
+    template void Solver<D>::prepare_contacts(const Crew&);                   \
+    template void Solver<D>::store_bodies(const SolverInput<D>&, const Crew&) const;
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE

@@ -101,8 +101,8 @@ CAROM_INLINE Vec<D, F> way_of(const Angular<D, F>& angle, const Vec<D, F>& arm) 
 }
 
 /// Carries the points along to where the bodies are now. Points out of reach are left out. The result tells
-/// the lanes for which that does not do: the bodies have moved too far, or all points are out of reach. The
-/// rows of those keep the impulses, and which points have some.
+/// the lanes for which that does not do: the bodies have moved too far, and the rows keep the impulses and
+/// which points have some; or all points are out of reach.
 template <int D, class F>
 CAROM_INLINE auto refresh(ContactRows<D, F>& rows, const ContactMarks<D, F>& marks, const Pose<D, F>& a,
                           const Pose<D, F>& b, F reach, F most_turn) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/crew.hpp"
 #include "solver/body_records.hpp"
 #include "solver/drive.hpp"
 #include "solver/marks.hpp"
@@ -39,7 +40,7 @@ template <int D>
 struct BodySpan {
     RecordView<D> view;
     float* drives = nullptr;  ///< of `Drive<D, F>`
-    std::size_t blocks = 0;
+    Part blocks;              ///< of them
 };
 
 /// The inner loops of the solver for one lane width.

@@ -120,7 +120,7 @@ struct PassesIn {
     CAROM_INLINE static void each_body(const BodySpan<D>& span, bool velocities, bool ways, Work work) {
         Drive<D, F>* drives = reinterpret_cast<Drive<D, F>*>(span.drives);
         std::uint32_t slots[width];
-        for (std::size_t k = 0; k < span.blocks; ++k) {
+        for (std::size_t k = span.blocks.begin; k < span.blocks.end; ++k) {
             for (int lane = 0; lane < width; ++lane)
                 slots[lane] = static_cast<std::uint32_t>(k * width + lane);
             Body<D, F> body = gather<F>(span.view, slots);

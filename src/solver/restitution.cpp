@@ -14,6 +14,7 @@ void Solver<D>::note_impacts() {
     impacts_.clear();
     for (std::uint32_t number = 0; number < sections_.size(); ++number) {
         const ContactStore<D>& store = sections_[number].contacts;
+        if (!store.some_bounce()) continue;
         for (std::uint32_t index = 0; index < store.size(); ++index) {
             if (!(store.traits(index / store.width()) & some_bouncy)) continue;
             const float restitution = store.restitution(index);

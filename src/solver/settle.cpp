@@ -20,7 +20,6 @@ bool Solver<D>::find_struck() {
         s.begun.clear();
         if (s.contacts.empty()) continue;
         s.struck.swap(s.hit);
-        passes_of(s).find_pushing(s.contacts.span());
         each_bit(
             s, [&](std::size_t block) { return s.waiting[block] & s.contacts.found(block); },
             [&](std::uint32_t index) { s.begun.push_back(index); });

@@ -90,42 +90,68 @@ template <int D>
 void Solver<D>::run(const SolverInput<D>& input) {
     if (count_ == 0) return;
     set_lengths(input);
-    load_bodies(input);
-    prepare_contacts();  // and apply the impulses that they have kept
+    make_room();
+    set_free_axes(input);
+    run_crew(input.scheduler, is_small(), [&](const Crew& crew) { work(input, crew); });
+}
 
-    sums_begun_ = false;
-    passes_->begin_warm(body_span(), h_);
-    each_section([&](Section& s) { passes_of(s).look_ahead(s.contacts.span(), view_, h_); });
-    passes_->begin(body_span(), h_);
-    note_impacts();
-    find_impacts();
-    step_through(input.substeps);
-    bounce(input);
-    store_bodies(input);
+/// What each worker does: all of them run through this, and meet where one needs what others did. What is
+/// small or has an order the first one does alone.
+template <int D>
+void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
+    load_bodies(input, crew);
+    prepare_contacts(crew);  // and apply the impulses that they have kept
+
+    each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin_warm(bodies, h_); });
+    each_share(crew, false, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
+        passes.look_ahead(span, view_, h_);
+    });
+    crew.meet();
+    each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin(bodies, h_); });
+    if (crew.is_first()) {
+        note_impacts();
+        find_impacts();
+    }
+    crew.meet();
+    step_through(input.substeps, crew);
+    if (crew.is_first()) bounce(input);
+    crew.meet();
+    store_bodies(input, crew);
 }
 
 template <int D>
-void Solver<D>::step_through(int substeps) {
-    passes_->integrate_velocities(body_span(), h_);
+void Solver<D>::step_through(int substeps, const Crew& crew) {
+    each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_velocities(bodies, h_); });
     for (int i = 0; i < substeps; ++i) {
-        each_section([&](Section& s) {
-            const Passes<D>& passes = passes_of(s);
-            (i == 0 ? passes.solve : passes.solve_and_tally)(s.contacts.span(), view_, sub_);
+        each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
+            (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
         });
-        const bool some_struck = find_struck();
-        if (some_struck) settle_struck<true>();
-        passes_->integrate_positions(body_span(), h_);
-        each_section([&](Section& s) { passes_of(s).relax(s.contacts.span(), view_, sub_); });
-        if (some_struck) {
+        each_share(crew, false,
+                   [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.find_pushing(span); });
+        crew.meet();
+        if (crew.is_first()) {
+            some_struck_ = find_struck();
+            if (some_struck_) settle_struck<true>();
+        }
+        crew.meet();
+        each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
+        each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
+            passes.relax(span, view_, sub_);
+        });
+        if (crew.is_first() && some_struck_) {
             settle_struck<false>();
             sum_struck();
             note_blows();
         }
+        crew.meet();
         const bool last = i + 1 == substeps;
-        (last ? passes_->finish : passes_->finish_and_integrate_velocities)(body_span(), h_);
+        each_body_share(crew, [&](const BodySpan<D>& bodies) {
+            (last ? passes_->finish : passes_->finish_and_integrate_velocities)(bodies, h_);
+        });
     }
-    each_section([&](Section& s) { passes_of(s).tally(s.contacts.span()); });
-    forget_last_blows();
+    each_share(crew, false, [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.tally(span); });
+    crew.meet();
+    if (crew.is_first()) forget_last_blows();
 }
 
 template class Solver<2>;

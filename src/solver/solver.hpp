@@ -25,6 +25,8 @@ struct SolverInput {
     std::span<BodyState<D>> states;  ///< of all bodies; those in contact are moved on
     std::span<const BodyMass<D>> masses;
     std::span<const Load<D>> loads;  ///< at the start of the step
+    Scheduler* scheduler = nullptr;  ///< or none: then all is done by the calling thread
+    bool some_locked = false;        ///< does any body have a locked axis along which it cannot be pushed?
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
@@ -78,23 +80,21 @@ class Solver {
     /// Carries the contacts along with their bodies. Calls `look(contact)` for each that has to be looked at:
     /// its manifold is no longer good, or it is not carried along.
     template <class Look>
-    void refresh(std::span<const BodyState<D>> states, float reach, Look&& look) {
+    void refresh(std::span<const BodyState<D>> states, float reach, Scheduler* scheduler, Look&& look) {
         const PoseView<D> poses{reinterpret_cast<const double*>(states.data())};
-        each_section([&](Section& s) {
-            passes_of(s).refresh(s.contacts.span(), poses, reach, static_cast<float>(reuse_turn));
-            each_found(s, look);
+        each_part(scheduler, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
+            passes.refresh(span, poses, reach, static_cast<float>(reuse_turn));
         });
+        each_section([&](Section& s) { each_found(s, look); });
     }
 
     void run(const SolverInput<D>& input);
 
     /// Calls `changed(contact)` for each contact that has begun or ended to touch.
     template <class Changed>
-    void report(Changed&& changed) {
-        each_section([&](Section& s) {
-            passes_of(s).touch(s.contacts.span());
-            each_found(s, changed);
-        });
+    void report(Scheduler* scheduler, Changed&& changed) {
+        each_part(scheduler, [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.touch(span); });
+        each_section([&](Section& s) { each_found(s, changed); });
     }
 
     static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -123,12 +123,40 @@ class Solver {
     // solver.cpp
     const Passes<D>& passes_of(const Section& section) const { return section.contacts.passes(); }
     void set_lengths(const SolverInput<D>& input);
-    void step_through(int substeps);
+    void work(const SolverInput<D>& input, const Crew& crew);
+    void step_through(int substeps, const Crew& crew);
+    bool is_small() const { return count_ < 256; }  ///< so that it is not worth several workers
     template <class Visit>
     void each_section(Visit&& visit) {
         for (Section& section : sections_) {
             if (!section.contacts.empty()) visit(section);
         }
+    }
+    /// `visit(passes, blocks)` for a share of the blocks of each section: the workers pass through them side
+    /// by side, and where bodies are written they wait for one another after each colour.
+    template <class Visit>
+    void each_share(const Crew& crew, bool writes_bodies, Visit&& visit) {
+        constexpr std::size_t least_blocks = 4;
+        for (Section& s : sections_) {
+            if (s.contacts.empty()) continue;
+            const bool one_by_one = writes_bodies && &s == &sections_[Colours::overflow];
+            const Part part = one_by_one ? Part{0, crew.is_first() ? s.contacts.blocks() : 0}
+                                         : crew.part(s.contacts.blocks(), least_blocks);
+            if (part.size() > 0) visit(passes_of(s), s.contacts.span(part.begin, part.size()));
+            if (writes_bodies) crew.meet();
+        }
+    }
+    /// The same with no step around it, and without writing bodies.
+    template <class Visit>
+    void each_part(Scheduler* scheduler, Visit&& visit) {
+        run_crew(scheduler, is_small(), [&](const Crew& crew) { each_share(crew, false, visit); });
+    }
+    /// `visit(bodies)` for a share of the bodies.
+    template <class Visit>
+    void each_body_share(const Crew& crew, Visit&& visit) {
+        const Part part = crew.part(drives_.blocks_for(slots_.size()), 4);
+        if (part.size() > 0) visit(BodySpan<D>{view_, drives_.data(), part});
+        crew.meet();
     }
     /// `visit(contact)` for what the last pass found.
     template <class Visit>
@@ -150,10 +178,13 @@ class Solver {
     }
 
     // load.cpp: bodies and contacts made ready for a step, and the bodies' states after it.
-    void load_bodies(const SolverInput<D>& input);
+    void make_room();
+    bool is_loaded(std::uint32_t slot) const;
+    void load_bodies(const SolverInput<D>& input, const Crew& crew);
     void load_body(const SolverInput<D>& input, std::uint32_t slot);
-    void prepare_contacts();
-    void store_bodies(const SolverInput<D>& input) const;
+    void set_free_axes(const SolverInput<D>& input);
+    void prepare_contacts(const Crew& crew);
+    void store_bodies(const SolverInput<D>& input, const Crew& crew) const;
 
     // settle.cpp: contacts that begin.
     bool find_struck();
@@ -172,8 +203,6 @@ class Solver {
     void find_impacts();
     void bounce(const SolverInput<D>& input);
     void bounce(const Impact& impact, const Rebound& rebound);
-
-    BodySpan<D> body_span() { return {view_, drives_.data(), drives_.blocks_for(slots_.size())}; }
 
     float h_ = 0;  ///< length of a sub-step
     SubStep<float> sub_{};
@@ -194,6 +223,7 @@ class Solver {
     std::vector<std::uint32_t> struck_slots_;  ///< those that have
     std::vector<std::pair<BlockSpan<D>, std::size_t>>
         wanted_;                   ///< blocks with such contacts, and their widths
+    bool some_struck_ = false;     ///< in this sub-step
     std::vector<Impact> impacts_;  ///< points with restitution
 };
 

@@ -25,6 +25,11 @@ template <int D>
 World<D>& World<D>::operator=(World&&) noexcept = default;
 
 template <int D>
+void World<D>::set_scheduler(std::shared_ptr<Scheduler> scheduler) {
+    state_->scheduler = std::move(scheduler);
+}
+
+template <int D>
 void World<D>::set_gravity(const Vec<D>& gravity) {
     require_finite(gravity, "gravity");
     state_->definition.gravity = gravity;
@@ -124,6 +129,7 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     m.linear_damping = definition.linear_damping;
     m.angular_damping = definition.angular_damping;
     m.locks = definition.locks;
+    w.some_locked |= definition.locks != Locks{};
     for (std::size_t k = 0; k < shapes.size(); ++k)
         put_shape(w, i, definition.shapes[k], std::move(shapes[k]));
     w.update_mass(i);  // moves the state from the frame to the centre of mass
@@ -391,6 +397,7 @@ template <int D>
 void World<D>::set_locks(BodyId<D> body, const Locks& locks) {
     const std::uint32_t i = state_->index(body);
     state_->masses[i].locks = locks;
+    state_->some_locked |= locks != Locks{};
     state_->states[i].velocity = free_components<D>(locks, state_->states[i].velocity);
     state_->states[i].angular_velocity = free_spin<D>(locks, state_->states[i].angular_velocity);
     state_->wake(i);

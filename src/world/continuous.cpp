@@ -224,35 +224,45 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
 
 /// Bodies that are apart and may meet within the step are moved on to where they first come near
 /// (conservative advancement, Mirtich 1996): the gap divided by a bound on its rate of closing is a time in
-/// which they cannot meet. The points found there are given the gaps that they have now, so the solver stops
-/// the bodies at the right place, along the right normal, however fast they are; and bodies that pass one
-/// another do not touch.
+/// which they cannot meet. Along an axis that held them apart before, the gap costs little and bounds the
+/// whole; only where it closes is a better axis looked for. The points found at last are given the gaps that
+/// they have now, so the solver stops the bodies at the right place, along the right normal, however fast
+/// they are; and bodies that pass one another do not touch.
 template <int D>
-void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
+void WorldState<D>::meet_ahead(ContactRecord<D>& c, const ContactCache<D>& cache, double dt) const {
     const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
+    const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
     const double turning = turning_speed(sa, ma) + turning_speed(sb, mb) + length(definition.gravity) * dt;
     const Vec<D> speed = sb.velocity - sa.velocity;
     constexpr double near = 0.5 * speculative_distance;
     constexpr int most_advances = 32;
     double elapsed = 0;
     BodyState<D> a = sa, b = sb;
+    Vec<D> axis = narrow<double>(cache.normal);
+    const double least_gap = cache.least_gap(RelativePose<D>(sa, sb), mb.radius);
+    if (least_gap - 0.5 * near > dt * (turning - dot(rotate(sa.rotation, axis), speed))) return;
     for (int i = 0; i < most_advances; ++i) {
         a = coasted(sa, ma, definition.gravity, elapsed);
         b = coasted(sb, mb, definition.gravity, elapsed);
-        const auto gap = gap_between<D>(shapes[c.shape_a].shape, shapes[c.shape_b].shape, c.facet,
-                                        relative(frame(a, ma), frame(b, mb)));
-        if (!gap) return;
+        const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
         const bool last = i + 1 == most_advances;
-        if (gap->distance <= near || last) {
-            ContactCache<D> then;
-            touch(c, a, b, speculative_distance, then);
-            set_points(then, a, b, speculative_distance, c);
-            break;
+        double distance = gap_along(shape_a, shape_b, b_in_a, axis);
+        if (distance <= near || last) {
+            const auto gap = gap_between<D>(shape_a, shape_b, c.facet, b_in_a);
+            if (!gap) return;
+            if (gap->distance <= near || last) {
+                ContactCache<D> then;
+                touch(c, a, b, speculative_distance, then);
+                set_points(then, a, b, speculative_distance, c);
+                break;
+            }
+            axis = gap->axis;
+            distance = gap->distance;
         }
-        const double closing = turning - dot(rotate(a.rotation, gap->axis), speed);
+        const double closing = turning - dot(rotate(a.rotation, axis), speed);
         if (closing <= 0) return;
-        elapsed += (gap->distance - 0.5 * near) / closing;
+        elapsed += (distance - 0.5 * near) / closing;
         if (elapsed > dt) return;
     }
     for (int i = 0; i < c.count; ++i) {
@@ -265,8 +275,8 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, double dt) const {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                                  \
-    template void WorldState<D>::meet_ahead(ContactRecord<D>&, double) const; \
+#define CAROM_INSTANTIATE(D)                                                                          \
+    template void WorldState<D>::meet_ahead(ContactRecord<D>&, const ContactCache<D>&, double) const; \
     template void WorldState<D>::stop_at_obstacles();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -23,7 +23,7 @@ void WorldState<D>::report_contacts() {
     events.clear();
     std::swap(events.contact_ends, dropped_contacts);
     touch_changes.clear();
-    solver.report([&](std::uint32_t i) {
+    solver.report(scheduler.get(), [&](std::uint32_t i) {
         solver.read(caches[i], contacts[i]);
         touch_changes.push_back(i);
     });

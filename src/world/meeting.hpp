@@ -19,13 +19,16 @@ double turning_speed(const BodyState<D>& s, const BodyMass<D>& m) {
     return std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * m.radius;
 }
 
-/// Manifold and gap of two shapes (see manifold.hpp), of which one may be a terrain: then of its facet.
+/// Manifold and gap of two shapes (see manifold.hpp), of which one may be a terrain: then of its facet. What
+/// the one has for a normal is the `axis` for the next.
 template <int D>
 Manifold<D> manifold_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
-                             const Transform<D>& b_in_a, double reach) {
-    if (a.kind == ShapeKind::terrain) return collide_facet<D>(b, a.terrain->facet(facet), b_in_a, reach);
-    if (b.kind != ShapeKind::terrain) return collide_shapes<D>(a, b, b_in_a, reach);
-    const Manifold<D> seen = collide_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a), reach);
+                             const Transform<D>& b_in_a, double reach, const Vec<D>& axis = {}) {
+    if (a.kind == ShapeKind::terrain)
+        return collide_facet<D>(b, a.terrain->facet(facet), b_in_a, reach, axis);
+    if (b.kind != ShapeKind::terrain) return collide_shapes<D>(a, b, b_in_a, reach, axis);
+    const Manifold<D> seen = collide_facet<D>(a, b.terrain->facet(facet), inverse(b_in_a), reach,
+                                              -unrotate(b_in_a.rotation, axis));
     return moved(exchanged(seen), b_in_a);
 }
 template <int D>

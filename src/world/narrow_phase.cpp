@@ -33,13 +33,15 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
     const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
     const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
-    Manifold<D> m = manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach);
+    Manifold<D> m =
+        manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach, narrow<double>(cache.normal));
     if (c.on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
     cache.pose = RelativePose<D>(a, b);
     cache.normal = narrow<float>(m.normal);
     cache.roundness_a = static_cast<float>(roundness<D>(shape_a, m.normal));
     cache.roundness_b = static_cast<float>(roundness<D>(shape_b, unrotate(b_in_a.rotation, m.normal)));
     cache.count = m.count;
+    if (m.count == 0) cache.gap = static_cast<float>(m.points[0].separation);
     for (int i = 0; i < m.count; ++i) {
         const Vec<D> on_a = m.points[i].position - ma.center;
         const Vec<D> on_b = unrotate(cache.pose.rotation, on_a - cache.pose.position);
@@ -83,7 +85,8 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
                              turning_speed(sb, mb) + length(definition.gravity) * dt);
     const double reach = definition.continuous ? speculative_distance : speculative_distance + way;
     const ContactRecord<D> old = c;
-    if (!cache.holds(RelativePose<D>(sa, sb))) {
+    const RelativePose<D> pose(sa, sb);
+    if (cache.least_gap(pose, mb.radius) <= reach && !cache.holds(pose)) {
         // Points that are out of reach by less than the bodies may move before this is done again count too.
         cache.way = static_cast<float>(reuse_share * smaller_radius(ma, mb));
         touch(c, sa, sb, reach + cache.way, cache);
@@ -93,7 +96,7 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
     }
     set_points(cache, sa, sb, reach, c);
     if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) {
-        meet_ahead(c, dt);
+        meet_ahead(c, cache, dt);
         if (c.count > 0) cache.forget();  // these points are of another time
     }
     if (c.special) {
@@ -108,13 +111,15 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
 template <int D>
 void WorldState<D>::collide(double dt) {
     list_patches();
-    solver.refresh(states, static_cast<float>(speculative_distance), [&](std::uint32_t i) {
+    solver.refresh(states, static_cast<float>(speculative_distance), scheduler.get(), [&](std::uint32_t i) {
         if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
     });
-    for (const std::uint32_t i : loose) {
-        ContactRecord<D>& c = contacts[i];
-        if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[i], dt);
-    }
+    run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            ContactRecord<D>& c = contacts[loose[k]];
+            if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[loose[k]], dt);
+        }
+    });
     merge_patches();
 }
 

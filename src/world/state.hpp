@@ -8,6 +8,7 @@
 #include "collision/sweep.hpp"
 #include "collision/tree.hpp"
 #include "core/adjacency.hpp"
+#include "core/crew.hpp"
 #include "core/pair_set.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
@@ -94,6 +95,7 @@ struct EventBuffers {
 template <int D>
 struct WorldState {
     WorldDefinition<D> definition;
+    std::shared_ptr<Scheduler> scheduler;  ///< or none: then all is done by the calling thread
     double time = 0;
     double last_step = 0;
     std::uint64_t step_count = 0;
@@ -148,6 +150,7 @@ struct WorldState {
     std::vector<std::uint32_t> awake;   ///< the awake dynamic bodies and the moving kinematic ones, by index
     std::vector<std::uint32_t> roused;  ///< bodies that may belong to `awake` by now
     std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
+    bool some_locked = false;           ///< has any body ever had a locked axis?
     std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
     std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
     std::vector<std::uint32_t> touch_changes;  ///< contacts that began or ended to touch
@@ -228,7 +231,7 @@ struct WorldState {
                     ContactRecord<D>& contact) const;
 
     // continuous.cpp: what is fast.
-    void meet_ahead(ContactRecord<D>& contact, double dt) const;
+    void meet_ahead(ContactRecord<D>& contact, const ContactCache<D>& cache, double dt) const;
     void list_fast_contacts();
     void stop_at_obstacles();
     void stop_bullets();

@@ -127,7 +127,8 @@ void WorldState<D>::sum_forces() {
 
 template <int D>
 void WorldState<D>::solve_contacts(double dt) {
-    solver.run({states, masses, loads, dt, definition.substeps, definition.restitution_threshold});
+    solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
+                definition.restitution_threshold});
 }
 
 template <int D>

@@ -68,6 +68,37 @@ TYPED_TEST(Determinism, AnyLaneWidthGivesTheSameBits) {
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
+/// A crowd that is large enough for several threads.
+template <int D>
+World<D> crowd() {
+    World<D> world;
+    world.add_body(ground<D>());
+    Random random(3);
+    for (int i = 0; i < 400; ++i) {
+        Geometry<D> geometry = cube<D>(0.5);
+        if (i % 5 == 1) geometry = Ball{0.25};
+        if (i % 5 == 2) geometry = Capsule<D>{-vec<D>(0.2, 0), vec<D>(0.2, 0), 0.15};
+        BodyDefinition<D> d = body_of<D>(geometry, vec<D>(0.6 * (i % 20), 0.3 + 0.6 * (i / 20)));
+        d.position += random.in_cube<D>(0.02);
+        d.bullet = i % 50 == 0;
+        world.add_body(d);
+    }
+    return world;
+}
+
+TYPED_TEST(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
+    constexpr int D = TypeParam::value;
+    World<D> alone = crowd<D>();
+    run(alone, 100);
+    EXPECT_GT(alone.counts().contacts, 400) << "enough that several threads are used";
+    for (const int threads : {1, 2, 3, 4, 8}) {
+        World<D> world = crowd<D>();
+        world.set_scheduler(make_thread_pool(threads));
+        run(world, 100);
+        EXPECT_EQ(world.hash(), alone.hash()) << threads;
+    }
+}
+
 TYPED_TEST(Determinism, AMovedWorldGoesOnAsIfNothingHadBeen) {
     constexpr int D = TypeParam::value;
     World<D> stays = heap<D>(), goes = heap<D>();

@@ -84,7 +84,7 @@ struct Scene {
             contacts[i].place ? solver.write(contacts[i], nullptr) : solver.add(i, contacts[i], nullptr);
         }
         const std::vector<BodyState<D>> before = states;
-        solver.run({states, masses, loads, dt, 4, 1});
+        solver.run({states, masses, loads, nullptr, true, dt, 4, 1});
         for (ContactRecord<D>& c : contacts) solver.read({}, c);
         // As if nothing turned, which is good enough for gaps of things at rest.
         for (ContactRecord<D>& c : contacts) {

@@ -21,6 +21,7 @@ struct Pair3 {
 struct Search3 {
     double limit;  ///< a gap between the cores beyond which the answer no longer matters
     bool steady;   ///< among directions of nearly equal gap, prefer faces to edges and a's faces to b's
+    Vec3 axis;     ///< from a to b, about a unit vector, where the answer may lie near; or zero
 };
 
 /// Along which direction two cores are nearest to being apart. All in a's frame.

@@ -27,7 +27,7 @@ std::optional<Separation<2>> separate_from_plane(const Shape<2>& a, const Shape<
 }
 
 Manifold<2> collide_with_plane(const Shape<2>& a, const Shape<2>& plane, const Transform<2>& plane_in_a,
-                               double reach) {
+                               double reach, const Vec2&) {
     const Outline outline(a, {});
     const HalfPlane half(plane, plane_in_a);
     Manifold<2> result;

@@ -89,14 +89,18 @@ std::optional<Separation<2>> separate_outlines(const Shape<2>& a, const Shape<2>
     return Separation<2>{near.axis, near.distance - first.radius() - second.radius()};
 }
 
-Manifold<2> collide_outlines(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach) {
+Manifold<2> collide_outlines(const Shape<2>& a, const Shape<2>& b, const Transform<2>& b_in_a, double reach,
+                             const Vec2& axis) {
+    const double last_gap = gap_along(a, b, b_in_a, axis);
+    if (last_gap > reach) return apart_along(axis, last_gap);
     const Outline first(a, {}), second(b, b_in_a);
-    return touching(first, second, proximity(first, second), reach);
+    const Proximity near = proximity(first, second);
+    const double gap = near.distance - first.radius() - second.radius();
+    return gap > reach ? apart_along(near.axis, gap) : touching(first, second, near, reach);
 }
 
 Manifold<2> touching(const Outline& first, const Outline& second, const Proximity& near, double reach) {
     const double rounding = first.radius() + second.radius();
-    if (near.distance - rounding > reach) return {};
     // A ball has nothing but itself to touch with; its contact lives on while it rolls from edge to edge.
     if (!first.has_edges() || !second.has_edges()) return single_point(near, first, second, 0);
 

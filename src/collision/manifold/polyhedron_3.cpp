@@ -5,45 +5,45 @@
 #include <memory_resource>
 #include <vector>
 
+#include "collision/manifold/heights_3.hpp"
 #include "collision/manifold/nearest_3.hpp"
 
 namespace carom::detail {
 
 namespace {
 
-/// A point inside.
-Vec3 middle_of(const Polyhedron& core) {
-    Vec3 sum{};
-    for (const Vec3& vertex : core.vertices) sum += vertex;
-    return sum / double(core.vertices.size());
+constexpr std::size_t none = std::size_t(-1);
+constexpr Nearest3 nothing{{}, -1e300, {}, {}};
+
+/// The face of one polyhedron that another is furthest in front of, and the corner of that which is furthest
+/// behind it. All in the frame of the face.
+struct FaceGap {
+    double gap;
+    Vec3 corner;
+    std::size_t face = none;
+};
+
+/// Looks for a wider gap than `best` has along the normals of a's faces, b's corners being placed in a's
+/// frame by `b_in_a`. No gap is more than the height of any of b's points over the face (`heights` are those
+/// of the first `best.corner`), which spares most faces the look at all of b's corners, since the best one's
+/// is where b is nearest to a or deepest in it.
+FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a,
+                          const Heights3& heights, FaceGap best, double limit) {
+    for (std::size_t f = 0; f < a.normals.size() && best.gap <= limit; ++f) {
+        if (heights[f] <= best.gap) continue;
+        if (best.face != none && dot(a.normals[f], best.corner) - a.offsets[f] <= best.gap) continue;
+        const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
+        const Vec3& lowest = b.vertices[furthest_corner(b, -normal)];
+        const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
+        const double gap = base + dot(normal, lowest);
+        if (gap > best.gap) best = {gap, apply(b_in_a, lowest), f};
+    }
+    return best;
 }
 
-/// The widest gap along the normals of a's faces, b's vertices being placed in a's frame by `b_in_a`. A gap
-/// is less than the height of b's middle over the face, which spares most faces the look at all of b's
-/// vertices.
-Nearest3 widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a, double limit) {
-    const Vec3 middle = apply(b_in_a, middle_of(b));
-    Nearest3 widest;
-    widest.distance = -1e300;
-    for (std::size_t f = 0; f < a.normals.size(); ++f) {
-        if (dot(a.normals[f], middle) - a.offsets[f] <= widest.distance) continue;
-        const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
-        const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
-        double gap = 1e300;
-        std::size_t lowest = 0;
-        for (std::size_t i = 0; i < b.vertices.size(); ++i) {
-            const double height = base + dot(normal, b.vertices[i]);
-            if (height < gap) {
-                gap = height;
-                lowest = i;
-            }
-        }
-        if (gap <= widest.distance) continue;
-        const Vec3 on_b = apply(b_in_a, b.vertices[lowest]);
-        widest = {a.normals[f], gap, on_b - gap * a.normals[f], on_b, false};
-        if (gap > limit) break;
-    }
-    return widest;
+Nearest3 at_face(const Polyhedron& core, const FaceGap& found) {
+    const Vec3& normal = core.normals[found.face];
+    return {normal, found.gap, found.corner - found.gap * normal, found.corner, false};
 }
 
 /// An edge of a polyhedron with the normals of the faces on its left and right.
@@ -52,14 +52,13 @@ struct Arc {
 };
 using Arcs = std::pmr::vector<Arc>;
 
-/// The edges, placed by `t`, that can part the polyhedron from another one by more than `gap`, if that has a
-/// point at `other` (in the polyhedron's frame). An edge's normals lie between those of its two faces; where
-/// `other` is below both faces by more than −gap, so it is along any of them.
-void find_arcs(const Polyhedron& core, const Transform3& t, const Vec3& other, double gap, Arcs& arcs) {
-    const double needed = std::min(gap, 0.0);
-    const auto height = [&](std::uint32_t f) { return dot(core.normals[f], other) - core.offsets[f]; };
+/// The edges, placed by `t`, that can part the polyhedron by more than `gap` from another one, which has two points
+/// at these heights over the faces.
+void find_arcs(const Polyhedron& core, const Transform3& t, const Heights3& of_first, const Heights3& of_second,
+               double gap, Arcs& arcs) {
+    const double needed = std::min(gap, 0.0) - core.unevenness;
     for (const Polyhedron::Edge& edge : core.edges) {
-        if (height(edge.left) < needed && height(edge.right) < needed) continue;
+        if (of_first.hides(edge, needed) || of_second.hides(edge, needed)) continue;
         const Vec3& from = core.vertices[edge.from];
         arcs.push_back({apply(t, from), rotate(t.rotation, core.vertices[edge.to] - from),
                         rotate(t.rotation, core.normals[edge.left]),
@@ -78,50 +77,83 @@ bool cross_on_gauss_map(const Arc& a, const Arc& b) {
     return dot(a.left, b.along) * right_of_a < 0 && left_of_b * right_of_a < 0;
 }
 
-/// The widest gap across an edge of a and one of b, if it is more than `gap`. In a's frame.
-Nearest3 widest_over_edges(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a, double gap) {
-    std::array<std::byte, 16 * 1024> room;
-    std::pmr::monotonic_buffer_resource memory(room.data(), room.size());
-    Arcs arcs_a(&memory), arcs_b(&memory);
-    find_arcs(a, {}, apply(b_in_a, middle_of(b)), gap, arcs_a);
-    find_arcs(b, b_in_a, apply_inverse(b_in_a, middle_of(a)), gap, arcs_b);
-
-    Nearest3 widest;
-    widest.distance = -1e300;
-    for (const Arc& of_a : arcs_a) {
-        for (const Arc& of_b : arcs_b) {
-            if (!cross_on_gauss_map(of_a, of_b)) continue;
-            Vec3 normal = cross(of_a.along, of_b.along);
+/// The widest gap across an edge of a and one of b. In a's frame.
+Nearest3 widest_over_edges(const Arcs& arcs_a, const Arcs& arcs_b) {
+    Nearest3 widest = nothing;
+    for (const Arc& arc_a : arcs_a) {
+        for (const Arc& arc_b : arcs_b) {
+            if (!cross_on_gauss_map(arc_a, arc_b)) continue;
+            Vec3 normal = cross(arc_a.along, arc_b.along);
             const double size = length(normal);
-            if (size <= 1e-7 * length(of_a.along) * length(of_b.along)) continue;
-            normal = normal / (dot(normal, of_a.left + of_a.right) < 0 ? -size : size);
-            const double candidate = dot(normal, of_b.start - of_a.start);
+            if (size <= 1e-7 * length(arc_a.along) * length(arc_b.along)) continue;
+            normal = normal / (dot(normal, arc_a.left + arc_a.right) < 0 ? -size : size);
+            const double candidate = dot(normal, arc_b.start - arc_a.start);
             if (candidate <= widest.distance) continue;
-            const SegmentPoints at = closest_on_segments(of_a.start, of_a.along, of_b.start, of_b.along);
+            const SegmentPoints at = closest_on_segments(arc_a.start, arc_a.along, arc_b.start, arc_b.along);
             const bool inside = at.s > 0 && at.s < 1 && at.t > 0 && at.t < 1;
-            widest = {normal, candidate, of_a.start + at.s * of_a.along, of_b.start + at.t * of_b.along,
+            widest = {normal, candidate, arc_a.start + at.s * arc_a.along, arc_b.start + at.t * arc_b.along,
                       candidate <= 0 || inside};
         }
     }
     return widest;
 }
 
+/// A unit vector from a to b along which they may be nearest: as the search says, or between their middles.
+Vec3 start_axis(const Pair3& pair, const Vec3& axis) {
+    if (axis != Vec3{}) return normalized(axis);
+    const Vec3 between = apply(pair.b_in_a, pair.b.core->middle) - pair.a.core->middle;
+    return between != Vec3{} ? normalized(between) : Vec3{0, 1, 0};
+}
+
+/// Where the widest gap of all is at least `known`, the least that one may have and be preferred to it (see
+/// `advantage`), with room for corners that stand out of their faces and for rounding. Shapes that are apart are
+/// all treated as if they touched, since no face or edge may show more of the gap between two corners.
+double least_of_interest(const Pair3& pair, double known) {
+    const Polyhedron &a = *pair.a.core, &b = *pair.b.core;
+    const double radii = core_radius(pair.a) + core_radius(pair.b);
+    const double room = a.unevenness + b.unevenness + 1e-6 * std::max(a.extent, b.extent);
+    return radii + (std::min(known, 0.0) - radii) / 0.95 - 2 * room;
+}
+
 }  // namespace
 
+// The gap along any direction bounds the widest from below, and the heights of points of the one over faces
+// of the other bound from above what can be found there. So with a good direction to begin with, few faces
+// and edges are left to look at; the answer does not depend on it.
 Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     const Polyhedron &a = *pair.a.core, &b = *pair.b.core;
-    const Transform3 a_in_b = inverse(pair.b_in_a);
-    const double extent = std::min(core_extent(pair.a), core_extent(pair.b));
+    const Transform3& b_in_a = pair.b_in_a;
+    const Transform3 a_in_b = inverse(b_in_a);
+    const double extent = std::min(a.extent, b.extent);
     const auto preferred = [&](const Nearest3& over, const Nearest3& favoured) {
         return over.distance > favoured.distance + advantage(pair, search, favoured.distance, extent);
     };
+    const Nearest3 start = gap_along(pair, start_axis(pair, search.axis));
+    if (start.distance > search.limit) return start;
+    const double least = least_of_interest(pair, start.distance);
 
-    Nearest3 nearest = widest_over_faces(a, b, pair.b_in_a, search.limit);
-    if (nearest.distance > search.limit) return nearest;
-    const Nearest3 of_b = exchanged(widest_over_faces(b, a, a_in_b, search.limit), pair.b_in_a);
-    if (preferred(of_b, nearest)) nearest = of_b;
-    if (nearest.distance > search.limit) return nearest;
-    const Nearest3 of_edges = widest_over_edges(a, b, pair.b_in_a, nearest.distance);
+    Memory3 memory;
+    Nearest3 nearest = nothing;
+    const Heights3 over_a(a, start.on_b, memory);
+    const FaceGap of_a = widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit);
+    if (of_a.face != none) nearest = at_face(a, of_a);
+    if (of_a.gap > search.limit) return nearest;
+    const Vec3 near_a = apply(a_in_b, start.on_a);
+    const Heights3 over_b(b, near_a, memory);
+    const FaceGap of_b = widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit);
+    if (of_b.face != none) {
+        const Nearest3 found = exchanged(at_face(b, of_b), b_in_a);
+        if (preferred(found, nearest)) nearest = found;
+    }
+    if (of_b.gap > search.limit) return nearest;
+
+    const double needed =
+        std::max(of_b.gap, nearest.distance + advantage(pair, search, nearest.distance, extent));
+    Arcs arcs_a(&memory.resource), arcs_b(&memory.resource);
+    find_arcs(a, {}, over_a, Heights3(a, of_a.corner, memory), needed, arcs_a);
+    if (arcs_a.empty()) return nearest;
+    find_arcs(b, b_in_a, over_b, Heights3(b, of_b.corner, memory), needed, arcs_b);
+    const Nearest3 of_edges = widest_over_edges(arcs_a, arcs_b);
     return preferred(of_edges, nearest) ? of_edges : nearest;
 }
 
@@ -153,7 +185,7 @@ double core_extent(const Shape<3>& shape) {
             return length(shape.b);
         case ShapeKind::hull:
         case ShapeKind::facet:
-            return length(shape.core->vertices.back() - shape.core->vertices.front());
+            return shape.core->extent;
         case ShapeKind::cylinder:
         case ShapeKind::cone:
             return shape.radius + shape.half_height;

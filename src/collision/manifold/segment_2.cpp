@@ -40,7 +40,7 @@ struct Meeting {
 
 template <>
 Manifold<2> collide_facet(const Shape<2>& convex, const Facet<2>& facet, const Transform<2>& placed,
-                          double reach) {
+                          double reach, const Vec2&) {
     const Meeting meeting(convex, facet, placed);
     if (meeting.behind || meeting.distance() > reach || meeting.looks_back(meeting.near.axis)) return {};
     const Manifold<2> result = touching(meeting.segment, meeting.outline, meeting.near, reach);

@@ -4,6 +4,7 @@
 
 #include "collision/facet.hpp"
 #include "collision/manifold/patch_3.hpp"
+#include "geometry/hull.hpp"
 
 namespace carom::detail {
 
@@ -35,6 +36,7 @@ class Triangle {
             core->indices.insert(core->indices.end(), {0, 2, 1});
             core->first.push_back(6);
         }
+        measure(*core);
         shape.kind = ShapeKind::facet;
         shape.a = (v[0] + v[1] + v[2]) / 3;
         shape.core = core;
@@ -261,18 +263,18 @@ bool is_behind(const Triangle& triangle, const Shape<3>& convex) {
 
 template <>
 Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const Transform<3>& placed,
-                          double reach) {
+                          double reach, const Vec3&) {
     const Triangle triangle(facet, placed);
     if (is_behind(triangle, convex)) return {};
     const Transform3 here{};
     const Pair3 pair{triangle.shape, convex, here};
     const double limit = reach + core_radius(convex);
-    Nearest3 found = nearest_to(triangle, pair, {limit, true});
+    Nearest3 found = nearest_to(triangle, pair, {limit, true, {}});
     if (found.distance > limit) return {};
     std::optional<Manifold<3>> patch;
     if (!triangle.looks_back(found.normal)) patch = contact_patch(pair, found, reach);
     if (!patch) {
-        found = made_certain(pair, nearest_to(triangle, pair, {limit, false}));
+        found = made_certain(pair, nearest_to(triangle, pair, {limit, false, {}}));
         if (found.distance > limit || triangle.looks_back(found.normal)) return {};
         patch = contact_patch(pair, found, reach);
     }
@@ -286,7 +288,7 @@ std::optional<Separation<3>> separate_facet(const Shape<3>& convex, const Facet<
     if (is_behind(triangle, convex)) return std::nullopt;
     const Transform3 here{};
     const Pair3 pair{triangle.shape, convex, here};
-    Nearest3 found = nearest_to(triangle, pair, {std::numeric_limits<double>::infinity(), false});
+    Nearest3 found = nearest_to(triangle, pair, {std::numeric_limits<double>::infinity(), false, {}});
     if (found.distance > 0) found = made_certain(pair, found);
     if (triangle.looks_back(found.normal)) return std::nullopt;
     return Separation<3>{rotate(placed.rotation, found.normal), found.distance - core_radius(convex)};
