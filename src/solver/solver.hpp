@@ -62,6 +62,8 @@ class Solver {
         touching_.resize(slots_.size(), 0);
         return true;
     }
+    /// Did `follow` find that this body began or ceased to move when it was last called?
+    bool changed(std::uint32_t body) const { return slots_.changed(body); }
     /// Has the body a contact here, or had it a joint in the last `run`?
     bool moves(std::uint32_t body) const { return is_loaded(slots_.slot(body)); }
 

@@ -4,7 +4,6 @@
 #include "joints/couplings.hpp"
 #include "joints/types.hpp"
 #include "math/check.hpp"
-#include "world/bonds.hpp"
 #include "world/state.hpp"
 
 // Joints: adding and removing them, changing and reading them, and what a step does about them.
@@ -42,10 +41,11 @@ void WorldState<D>::list_active_joints() {
 /// Who hangs on something that moves does not sleep.
 template <int D>
 void WorldState<D>::wake_jointed() {
-    each_bond([&](std::uint32_t a, std::uint32_t b) {
-        if (moving[a] != stands_still) wake(b);
-        if (moving[b] != stands_still) wake(a);
-    });
+    for (const std::uint32_t i : awake) {
+        bonds.each(i, [&](std::uint32_t, std::uint32_t other) {
+            if (moving[other] == stands_still) wake(other);
+        });
+    }
 }
 
 template <int D>
@@ -98,8 +98,7 @@ void part(WorldState<D>& w, const JointRecord<D>& joint, bool begins) {
     change_ignored(w.infos[a].jointed, b, begins);
     change_ignored(w.infos[b].jointed, a, begins);
     if (begins) {
-        w.remove_contacts_if(
-            [&](const ContactRecord<D>& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(a, b); });
+        w.remove_contacts_between(a, b);
     } else {
         for (const ShapeId<D>& id : w.infos[a].shapes) w.mark_moved(id.index);
     }
@@ -135,6 +134,7 @@ void WorldState<D>::remove_joint(std::uint32_t joint) {
     std::erase_if(couplings, [&](const CouplingRecord<D>& c) { return c.joint == joint; });
     const JointRecord<D>& record = joints[joint];
     wake_both(*this, record);
+    if (record.body_a != no_body) bonds.remove(joint);
     if (!joint_definitions[joint].collide) part(*this, record, false);
     std::erase(joint_ids, id);
     joint_slots.release(joint);
@@ -277,6 +277,7 @@ JointId<D> World<D>::add_joint(const JointDefinition<D>& definition) {
     }
     const auto id = w.joint_slots.template id<JointId<D>>(i);
     w.joint_ids.push_back(id);
+    if (w.joints[i].body_a != no_body) w.bonds.add(i, w.joints[i].body_a, w.joints[i].body_b);
     if (!definition.collide) part(w, w.joints[i], true);
     wake_both(w, w.joints[i]);
     return id;

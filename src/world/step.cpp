@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "math/check.hpp"
 #include "world/state.hpp"
 
@@ -85,32 +87,42 @@ void WorldState<D>::begin_step(double) {
     });
     wake_islands();
 
+    quarantined.clear();
+    list_moving();
+}
+
+/// Brings `awake` up to date. Only who was in it or was roused since can be moving.
+template <int D>
+void WorldState<D>::list_moving() {
     for (const std::uint32_t i : awake) moving[i] = stands_still;
-    moving.resize(states.size(), stands_still);
+    roused.insert(roused.end(), awake.begin(), awake.end());
+    if (!std::ranges::is_sorted(roused)) std::ranges::sort(roused);
     awake.clear();
     before.clear();
-    quarantined.clear();
-    for (const std::uint32_t i : movable) {
-        if (is_moving(i) && is_absurd(states[i])) quarantine(i);
-        if (is_moving(i) && !infos[i].disabled) list_awake(i);
+    for (const std::uint32_t i : roused) {
+        if (moving[i] != stands_still) continue;  // listed twice
+        if (tree_for(i) == of_moving && is_absurd(states[i])) quarantine(i);
+        if (tree_for(i) == of_moving)
+            list_awake(i);
+        else
+            change_tree(i, tree_for(i));
     }
+    roused.clear();
 }
 
 template <int D>
 void WorldState<D>::list_awake(std::uint32_t body) {
+    change_tree(body, of_moving);
     awake.push_back(body);
     before.push_back(states[body]);
-    place.resize(states.size());
     place[body] = static_cast<std::uint32_t>(awake.size() - 1);
     moving[body] = types[body] == BodyType::dynamic ? moves_freely : moved_by_user;
 }
 
 template <int D>
 void WorldState<D>::sum_forces() {
-    loads.resize(states.size());
-    varies.resize(states.size());
     for (const std::uint32_t i : awake) varies[i] = 0;
-    forces.mark_fields(time, varies);
+    forces.mark_fields(time, awake, varies);
     LoadModel<D>{definition.gravity, applied, awake, forces}.sum({states, masses}, time, loads);
 }
 
