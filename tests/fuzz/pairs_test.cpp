@@ -4,6 +4,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "fuzz/ground_case.hpp"
 #include "fuzz/pair_case.hpp"
 
 // Run with `--count=10000000` for as many placements of each pair, and with `--first=N` to begin at number N.
@@ -30,6 +31,22 @@ void look_at_pairs() {
     }
 }
 
+template <int D>
+void look_at_ground() {
+    constexpr int kinds = D == 2 ? 5 : 7, plane = 4, most_faults = 5;
+    for (int kind = 0; kind < kinds; ++kind) {
+        int faults = 0;
+        for (std::uint64_t n = first; kind != plane && n < first + count && faults < most_faults; ++n) {
+            const std::string fault = fault_of_ground_case<D>(kind, n);
+            if (fault.empty()) continue;
+            ++faults;
+            ADD_FAILURE() << D << "D, kind " << kind << " on ground, number " << n << ":\n" << fault;
+        }
+    }
+}
+
+TEST(Fuzz, ground_in_the_plane_agrees_with_the_oracles) { look_at_ground<2>(); }
+TEST(Fuzz, ground_in_space_agrees_with_the_oracles) { look_at_ground<3>(); }
 TEST(Fuzz, pairs_in_the_plane_agree_with_the_oracles) { look_at_pairs<2>(); }
 TEST(Fuzz, pairs_in_space_agree_with_the_oracles) { look_at_pairs<3>(); }
 
