@@ -47,6 +47,27 @@ void look_at_ground() {
 
 TEST(Fuzz, ground_in_the_plane_agrees_with_the_oracles) { look_at_ground<2>(); }
 TEST(Fuzz, ground_in_space_agrees_with_the_oracles) { look_at_ground<3>(); }
+/// What was wrong once.
+TEST(Fuzz, cases_that_were_wrong_are_right) {
+    struct Case {
+        int kind_a, kind_b;
+        std::uint64_t number;
+    };
+    for (const auto& [a, b, n] : {Case{1, 2, 3041},
+                                  {1, 2, 12251},
+                                  {2, 2, 83603},
+                                  {2, 2, 165164},
+                                  {2, 3, 76702},
+                                  {2, 3, 96018},
+                                  {2, 3, 96119},
+                                  {2, 3, 194765},
+                                  {3, 3, 28118},
+                                  {3, 3, 180431}})
+        EXPECT_EQ(fault_of_case<2>(a, b, n), "") << a << ", " << b << ", " << n;
+    for (const auto& [a, b, n] : {Case{1, 3, 538}, {1, 3, 1419}, {3, 3, 564}})
+        EXPECT_EQ(fault_of_case<3>(a, b, n), "") << a << ", " << b << ", " << n;
+}
+
 TEST(Fuzz, pairs_in_the_plane_agree_with_the_oracles) { look_at_pairs<2>(); }
 TEST(Fuzz, pairs_in_space_agree_with_the_oracles) { look_at_pairs<3>(); }
 
