@@ -11,6 +11,8 @@ template <int D>
 BenchWorld<D> many_pyramids();
 BenchWorld<2> smash();
 BenchWorld<3> convex_pile();
+template <int D>
+BenchWorld<D> sleeping_city();
 BenchWorld<3> convex_vs_mesh();
 BenchWorld<3> large_world();
 BenchWorld<3> wide_pyramid();

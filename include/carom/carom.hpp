@@ -10,6 +10,7 @@
 #include "carom/forces.hpp"
 #include "carom/ids.hpp"
 #include "carom/inertia.hpp"
+#include "carom/joints.hpp"
 #include "carom/mass.hpp"
 #include "carom/queries.hpp"
 #include "carom/rotation.hpp"

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "math/check.hpp"
 #include "world/state.hpp"
 
@@ -53,7 +55,7 @@ void WorldState<D>::step(double dt) {
     wake_touched(dt);           // sleepers that are being hit
     place_contacts();           // what came out, for the solver
     sum_forces();               // gravity, the user's forces, generators
-    solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
+    solve_constraints(dt);      // bodies in contact or on joints: sub-steps of the solver
     fly_free_bodies(dt);        // all others: the integrator
     move_kinematic_bodies(dt);  // what only the user moves
     stop_at_obstacles();        // nothing passes through what stands still
@@ -61,6 +63,7 @@ void WorldState<D>::step(double dt) {
     keep_in_boxes(dt);          // queries find the bodies where they are now
     report_contacts();          // what began, ended and hit
     sense();                    // who is inside the sensors
+    break_joints();             // those that were pulled too hard
     fall_asleep(dt);            // islands at rest
 
     time += dt;
@@ -84,46 +87,57 @@ void WorldState<D>::begin_step(double) {
     });
     wake_islands();
 
+    quarantined.clear();
+    list_moving();
+}
+
+/// Brings `awake` up to date. Only who was in it or was roused since can be moving.
+template <int D>
+void WorldState<D>::list_moving() {
     for (const std::uint32_t i : awake) moving[i] = stands_still;
-    moving.resize(states.size(), stands_still);
+    roused.insert(roused.end(), awake.begin(), awake.end());
+    if (!std::ranges::is_sorted(roused)) std::ranges::sort(roused);
     awake.clear();
     before.clear();
-    quarantined.clear();
-    for (const std::uint32_t i : movable) {
-        if (is_moving(i) && is_absurd(states[i])) quarantine(i);
-        if (is_moving(i) && !infos[i].disabled) list_awake(i);
+    for (const std::uint32_t i : roused) {
+        if (moving[i] != stands_still) continue;  // listed twice
+        if (tree_for(i) == of_moving && is_absurd(states[i])) quarantine(i);
+        if (tree_for(i) == of_moving)
+            list_awake(i);
+        else
+            change_tree(i, tree_for(i));
     }
+    roused.clear();
 }
 
 template <int D>
 void WorldState<D>::list_awake(std::uint32_t body) {
+    change_tree(body, of_moving);
     awake.push_back(body);
     before.push_back(states[body]);
-    place.resize(states.size());
     place[body] = static_cast<std::uint32_t>(awake.size() - 1);
     moving[body] = types[body] == BodyType::dynamic ? moves_freely : moved_by_user;
 }
 
 template <int D>
 void WorldState<D>::sum_forces() {
-    loads.resize(states.size());
-    varies.resize(states.size());
     for (const std::uint32_t i : awake) varies[i] = 0;
-    forces.mark_fields(time, varies);
+    forces.mark_fields(time, awake, varies);
     LoadModel<D>{definition.gravity, applied, awake, forces}.sum({states, masses}, time, loads);
 }
 
 template <int D>
-void WorldState<D>::solve_contacts(double dt) {
+void WorldState<D>::solve_constraints(double dt) {
+    list_active_joints();
     solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
-                definition.restitution_threshold});
+                definition.restitution_threshold, joints, active_joints, couplings, active_couplings});
 }
 
 template <int D>
 void WorldState<D>::fly_free_bodies(double dt) {
     flying.clear();
     for (const std::uint32_t i : awake) {
-        if (types[i] == BodyType::dynamic && !solver.has_contact(i)) flying.push_back(i);
+        if (types[i] == BodyType::dynamic && !solver.moves(i)) flying.push_back(i);
     }
     const LoadModel<D> model{definition.gravity, applied, flying, forces};
     fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);
