@@ -14,7 +14,10 @@ namespace carom::detail {
 template <int D>
 class Couplings {
   public:
-    /// Takes up the couplings of bodies that move and applies the impulses that they have kept.
+    /// Takes up the couplings of bodies that move.
+    void plan(const JointInput<D>& input) { rows_.resize(input.active_couplings.size()); }
+    bool any() const { return !rows_.empty(); }
+    /// Fills the rows and applies the impulses that they have kept.
     void prepare(const JointInput<D>& input);
     void solve(const RecordView<D>& bodies) { pass<true>(bodies); }
     void relax(const RecordView<D>& bodies) { pass<false>(bodies); }

@@ -121,15 +121,15 @@ const CouplingRecord<D>* WorldState<D>::coupling_of(std::uint32_t joint) const {
 template <int D>
 void WorldState<D>::remove_joint(std::uint32_t joint) {
     const JointId<D> id = joint_slots.template id<JointId<D>>(joint);
-    for (std::size_t i = 0; i < joint_ids.size();) {
-        const std::uint32_t other = joint_ids[i].index;
+    for (std::size_t i = 0; i < couplings.size();) {
+        const std::uint32_t other = couplings[i].joint;
         const bool names_it = std::visit(
             [&](const auto& kind) {
                 if constexpr (requires { kind.joint_a; }) return kind.joint_a == id || kind.joint_b == id;
                 return false;
             },
             joint_definitions[other].kind);
-        names_it ? remove_joint(other) : void(++i);
+        names_it&& other != joint ? remove_joint(other) : void(++i);
     }
     std::erase_if(couplings, [&](const CouplingRecord<D>& c) { return c.joint == joint; });
     const JointRecord<D>& record = joints[joint];
