@@ -21,7 +21,7 @@ std::vector<typename detail::Tree<D>::Entry> entries() {
         const Vec<D> center = scatter.in_cube<D>(half<D>);
         Vec<D> extent;
         for (int k = 0; k < D; ++k) extent[k] = scatter.between(0.25, 0.75);
-        result.push_back({{center - extent, center + extent}, std::uint32_t(i)});
+        result.push_back({Aabb<D>{center - extent, center + extent}, std::uint32_t(i)});
     }
     return result;
 }
@@ -59,7 +59,8 @@ void tree_move(benchmark::State& state) {
     for (auto _ : state) {
         for (std::int32_t leaf = 0; leaf < boxes; ++leaf) {
             const Vec<D> way = scatter.in_cube<D>(0.2);
-            tree.move(leaf, {tree.box(leaf).lower + way, tree.box(leaf).upper + way});
+            const Aabb<D> box = detail::widened(tree.box(leaf));
+            tree.move(leaf, Aabb<D>{box.lower + way, box.upper + way});
         }
     }
     state.SetItemsProcessed(state.iterations() * boxes);

@@ -17,6 +17,8 @@ BenchWorld<2> spinner();
 BenchWorld<2> rain_2();
 BenchWorld<3> rain_3();
 BenchWorld<3> convex_pile();
+template <int D>
+BenchWorld<D> sleeping_city();
 BenchWorld<3> convex_vs_mesh();
 BenchWorld<3> large_world();
 BenchWorld<3> wide_pyramid();

@@ -54,6 +54,41 @@ BenchWorld<3> convex_pile() {
     return bench;
 }
 
+template <int D>
+BenchWorld<D> sleeping_city() {
+    constexpr int floors = 10;
+    constexpr int houses = 10'000;  // in space a square of streets, in the plane a row
+    constexpr int side = D == 2 ? houses : 100;
+    constexpr double pitch = 4, square = 40;  // m; no houses stand nearer to the middle than half the square
+    BenchWorld<D> bench{World<D>(bench_world<D>())};
+    const double half_ground = 0.5 * side * pitch + square;
+    bench.world.add_body(
+        box_body<D>(BodyType::fixed, make_vec<D>(0, -1, 0), make_vec<D>(half_ground, 1, half_ground), 1000));
+    const auto place = [](int i) {
+        const double x = pitch * (i - 0.5 * (side - 1));
+        return x + (x < 0 ? -0.5 : 0.5) * square;
+    };
+    for (int i = 0; i < houses; ++i)
+        for (int floor = 0; floor < floors; ++floor) {
+            const Vec<D> center = make_vec<D>(place(i % side), 0.5 + floor, place(i / side));
+            bench.world.put_to_sleep(bench.world.add_body(
+                box_body<D>(BodyType::dynamic, center, make_vec<D>(0.5, 0.5, 0.5), 100)));
+        }
+    BodyDefinition<D> ball;
+    ball.position = make_vec<D>(-0.5 * square, 0.5, 0);
+    ball.velocity = make_vec<D>(4, 0, 0);
+    if constexpr (D == 2)
+        ball.angular_velocity = -8;
+    else
+        ball.angular_velocity = {0, 0, -8};
+    ball.shapes.emplace_back().geometry = Ball{0.5};
+    bench.world.add_body(ball);
+    return bench;
+}
+
+template BenchWorld<2> sleeping_city();
+template BenchWorld<3> sleeping_city();
+
 BenchWorld<3> convex_vs_mesh() {
     constexpr int cells = 100;
     constexpr double cell = 3;

@@ -62,19 +62,23 @@ BenchWorld<2> tumbler() {
     const BodyId2 floor = bench.world.add_body(ground);
     BodyDefinition<2> drum;
     drum.position = {0, 10};
-    for (const auto& [center, half] : {std::pair<Vec2, Vec2>{{10, 0}, {0.5, 10}}, {{-10, 0}, {0.5, 10}},
-                                       {{0, 10}, {10, 0.5}}, {{0, -10}, {10, 0.5}}}) {
+    for (const auto& [center, half] : {std::pair<Vec2, Vec2>{{10, 0}, {0.5, 10}},
+                                       {{-10, 0}, {0.5, 10}},
+                                       {{0, 10}, {10, 0.5}},
+                                       {{0, -10}, {10, 0.5}}}) {
         ShapeDefinition<2>& wall = drum.shapes.emplace_back();
         wall.geometry = Box<2>{2.0 * half};
         wall.center = center;
         wall.material.density = 50;
     }
     const BodyId2 body = bench.world.add_body(drum);
-    join<2>(bench.world, HingeJoint<2>{.anchor = {0, 10}, .motor = JointMotor{.speed = 25 * pi / 180, .max = 1e8}},
-            floor, body);
+    join<2>(bench.world,
+            HingeJoint<2>{.anchor = {0, 10}, .motor = JointMotor{.speed = 25 * pi / 180, .max = 1e8}}, floor,
+            body);
     for (int i = 0; i < 45; ++i)
         for (int j = 0; j < 45; ++j)
-            bench.world.add_body(box_body<2>(BodyType::dynamic, {-9 + 0.4 * j, 1 + 0.4 * i}, {0.125, 0.125}, 1));
+            bench.world.add_body(
+                box_body<2>(BodyType::dynamic, {-9 + 0.4 * j, 1 + 0.4 * i}, {0.125, 0.125}, 1));
     return bench;
 }
 

@@ -104,13 +104,20 @@ void add_joint(World3& world, const Bone& bone, BodyId3 a, BodyId3 b) {
     joint.b = b;
     const Vec3 anchor = apply(placed_a, bone.anchor_a);
     if (bone.is_hinge) {
-        HingeJoint<3> hinge{.anchor = anchor, .axis = axis_a, .limits = twist,
-                            .motor = JointMotor{.speed = 0, .max = 5 * bone.friction}, .spring = spring};
+        HingeJoint<3> hinge{.anchor = anchor,
+                            .axis = axis_a,
+                            .limits = twist,
+                            .motor = JointMotor{.speed = 0, .max = 5 * bone.friction},
+                            .spring = spring};
         hinge.spring->rest = -start;
         joint.kind = hinge;
     } else {
-        joint.kind = BallJoint<3>{.anchor = anchor, .axis = axis_b, .cone_axis = axis_a,
-                                  .swing_limit = bone.swing * degree, .twist_limits = twist, .spring = spring,
+        joint.kind = BallJoint<3>{.anchor = anchor,
+                                  .axis = axis_b,
+                                  .cone_axis = axis_a,
+                                  .swing_limit = bone.swing * degree,
+                                  .twist_limits = twist,
+                                  .spring = spring,
                                   .friction = 5 * bone.friction};
     }
     world.add_joint(joint);
@@ -130,7 +137,8 @@ std::vector<BodyId3> add_human(World3& world, const Vec3& position, int group) {
         shape.material.rolling_resistance = 0.2;
         if (bone.in_group) shape.filter.group = -group;
         bodies.push_back(world.add_body(body));
-        if (bone.parent >= 0) add_joint(world, bone, bodies[static_cast<std::size_t>(bone.parent)], bodies.back());
+        if (bone.parent >= 0)
+            add_joint(world, bone, bodies[static_cast<std::size_t>(bone.parent)], bodies.back());
     }
     constexpr std::size_t left_thigh = 6, right_thigh = 8;
     world.set_collision(bodies[left_thigh], bodies[right_thigh], false);
@@ -149,16 +157,16 @@ struct FlatBone {
 };
 
 constexpr FlatBone flat_bones[] = {
-    {-1, 0.95, -0.02, 0.02, 0.095, 0, 0, 0, 0, 0},                  // hip
-    {0, 1.2, -0.135, 0.135, 0.09, 0, 1.0, -0.25, 0, 0.5},           // torso
-    {1, 1.475, -0.038, 0.039, 0.075, 0.1, 1.4, -0.3, 0.1, 0.25},    // head
-    {0, 0.775, -0.125, 0.125, 0.06, 0, 0.9, -0.05, 0.4, 1},         // left upper leg
-    {3, 0.475, -0.155, 0.125, 0.045, 0, 0.625, -0.5, -0.02, 0.5},   // left lower leg
-    {0, 0.775, -0.125, 0.125, 0.06, 0, 0.9, -0.05, 0.4, 1},         // right upper leg
-    {5, 0.475, -0.155, 0.125, 0.045, 0, 0.625, -0.5, -0.02, 0.5},   // right lower leg
-    {1, 1.225, -0.125, 0.125, 0.035, 0, 1.35, -0.1, 0.8, 0.5},      // left upper arm
+    {-1, 0.95, -0.02, 0.02, 0.095, 0, 0, 0, 0, 0},                 // hip
+    {0, 1.2, -0.135, 0.135, 0.09, 0, 1.0, -0.25, 0, 0.5},          // torso
+    {1, 1.475, -0.038, 0.039, 0.075, 0.1, 1.4, -0.3, 0.1, 0.25},   // head
+    {0, 0.775, -0.125, 0.125, 0.06, 0, 0.9, -0.05, 0.4, 1},        // left upper leg
+    {3, 0.475, -0.155, 0.125, 0.045, 0, 0.625, -0.5, -0.02, 0.5},  // left lower leg
+    {0, 0.775, -0.125, 0.125, 0.06, 0, 0.9, -0.05, 0.4, 1},        // right upper leg
+    {5, 0.475, -0.155, 0.125, 0.045, 0, 0.625, -0.5, -0.02, 0.5},  // right lower leg
+    {1, 1.225, -0.125, 0.125, 0.035, 0, 1.35, -0.1, 0.8, 0.5},     // left upper arm
     {7, 0.975, -0.125, 0.125, 0.03, 0.1, 1.1, -0.2, 0.3, 0.1, 0.25},
-    {1, 1.225, -0.125, 0.125, 0.035, 0, 1.35, -0.1, 0.8, 0.5},      // right upper arm
+    {1, 1.225, -0.125, 0.125, 0.035, 0, 1.35, -0.1, 0.8, 0.5},  // right upper arm
     {9, 0.975, -0.125, 0.125, 0.03, 0.1, 1.1, -0.2, 0.3, 0.1, 0.25},
 };
 

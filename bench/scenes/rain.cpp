@@ -7,8 +7,8 @@
 namespace carom::bench {
 namespace {
 
-/// Groups of humans that fall in columns, until all columns are there; then the oldest is taken away and falls
-/// anew, and so on.
+/// Groups of humans that fall in columns, until all columns are there; then the oldest is taken away and
+/// falls anew, and so on.
 template <int D>
 class Rain {
   public:
@@ -36,8 +36,12 @@ class Rain {
     std::vector<Bodies> groups_;
 };
 
-void append(std::vector<BodyId2>& all, const std::vector<BodyId2>& more) { all.insert(all.end(), more.begin(), more.end()); }
-void append(std::vector<BodyId3>& all, const std::vector<BodyId3>& more) { all.insert(all.end(), more.begin(), more.end()); }
+void append(std::vector<BodyId2>& all, const std::vector<BodyId2>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+void append(std::vector<BodyId3>& all, const std::vector<BodyId3>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
 
 std::vector<BodyId2> group_of_five(World2& world, int row, int column) {
     std::vector<BodyId2> group;
@@ -62,7 +66,8 @@ Mesh flat_grid() {
     constexpr double cell = 15.0 / cells;
     Mesh mesh;
     for (int x = 0; x <= cells; ++x)
-        for (int z = 0; z <= cells; ++z) mesh.vertices.push_back({(x - cells / 2) * cell, 0, (z - cells / 2) * cell});
+        for (int z = 0; z <= cells; ++z)
+            mesh.vertices.push_back({(x - cells / 2) * cell, 0, (z - cells / 2) * cell});
     const auto vertex = [](int x, int z) { return static_cast<std::uint32_t>(x * (cells + 1) + z); };
     for (int x = 0; x < cells; ++x)
         for (int z = 0; z < cells; ++z) {
@@ -78,10 +83,13 @@ Mesh torus() {
     Mesh mesh;
     for (int i = 0; i < parts; ++i)
         for (int k = 0; k < parts; ++k) {
-            const Rotation2 u = Rotation2::from_angle(2 * pi * i / parts), v = Rotation2::from_angle(2 * pi * k / parts);
+            const Rotation2 u = Rotation2::from_angle(2 * pi * i / parts),
+                            v = Rotation2::from_angle(2 * pi * k / parts);
             mesh.vertices.push_back({(3.75 + v.c) * u.c, (3.75 + v.c) * u.s, v.s});
         }
-    const auto vertex = [](int i, int k) { return static_cast<std::uint32_t>(i % parts * parts + k % parts); };
+    const auto vertex = [](int i, int k) {
+        return static_cast<std::uint32_t>(i % parts * parts + k % parts);
+    };
     for (int i = 0; i < parts; ++i)
         for (int k = 0; k < parts; ++k) {
             mesh.triangles.push_back({vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1)});

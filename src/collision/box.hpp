@@ -1,15 +1,54 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "carom/transform.hpp"
+#include "math/dim.hpp"
 
 namespace carom::detail {
 
-/// The smallest box around two boxes.
+/// The largest `float` that is not greater than the number, or the smallest that is not less.
+inline float rounded_down(double x) {
+    constexpr float most = std::numeric_limits<float>::max();
+    if (x > most) return most;
+    if (x < -most) return -std::numeric_limits<float>::infinity();
+    const auto f = static_cast<float>(x);
+    if (f <= x) return f;
+    const auto bits = std::bit_cast<std::uint32_t>(f);
+    if (f > 0) return std::bit_cast<float>(bits - 1);
+    return f < 0 ? std::bit_cast<float>(bits + 1) : -std::numeric_limits<float>::denorm_min();
+}
+inline float rounded_up(double x) { return -rounded_down(-x); }
+
+/// A box in single precision that holds a given one: half as large to keep, and larger by a few millionths of
+/// its coordinates.
 template <int D>
-constexpr Aabb<D> merged(Aabb<D> a, const Aabb<D>& b) {
+struct OuterBox {
+    Vec<D, float> lower{}, upper{};
+
+    OuterBox() = default;
+    OuterBox(const Aabb<D>& box) {
+        for (int i = 0; i < D; ++i) {
+            lower[i] = rounded_down(box.lower[i]);
+            upper[i] = rounded_up(box.upper[i]);
+        }
+    }
+    friend bool operator==(const OuterBox&, const OuterBox&) = default;
+};
+
+/// The same box.
+template <int D>
+Aabb<D> widened(const OuterBox<D>& box) {
+    return {narrow<double>(box.lower), narrow<double>(box.upper)};
+}
+
+/// The smallest box around two boxes.
+template <template <int> class Box, int D>
+constexpr Box<D> merged(Box<D> a, const Box<D>& b) {
     for (int i = 0; i < D; ++i) {
         a.lower[i] = std::min(a.lower[i], b.lower[i]);
         a.upper[i] = std::max(a.upper[i], b.upper[i]);
@@ -18,16 +57,16 @@ constexpr Aabb<D> merged(Aabb<D> a, const Aabb<D>& b) {
 }
 
 /// Do two boxes have a point in common?
-template <int D>
-constexpr bool overlaps(const Aabb<D>& a, const Aabb<D>& b) {
+template <template <int> class Box, template <int> class Other, int D>
+constexpr bool overlaps(const Box<D>& a, const Other<D>& b) {
     bool result = true;
     for (int i = 0; i < D; ++i) result &= a.lower[i] <= b.upper[i] && b.lower[i] <= a.upper[i];
     return result;
 }
 
 /// Does `outer` hold all of `inner`?
-template <int D>
-constexpr bool contains(const Aabb<D>& outer, const Aabb<D>& inner) {
+template <template <int> class Box, template <int> class Other, int D>
+constexpr bool contains(const Box<D>& outer, const Other<D>& inner) {
     bool result = true;
     for (int i = 0; i < D; ++i)
         result &= outer.lower[i] <= inner.lower[i] && inner.upper[i] <= outer.upper[i];
@@ -36,10 +75,11 @@ constexpr bool contains(const Aabb<D>& outer, const Aabb<D>& inner) {
 
 /// Half of the perimeter (2D) or of the surface (3D): how likely a random line is to hit the box. Infinite
 /// extents count as 1e100, so that sums and differences of costs stay finite.
-template <int D>
-constexpr double half_surface(const Aabb<D>& box) {
-    Vec<D> size = box.upper - box.lower;
-    for (int i = 0; i < D; ++i) size[i] = std::min(size[i], 1e100);
+template <template <int> class Box, int D>
+constexpr double half_surface(const Box<D>& box) {
+    Vec<D> size{};
+    for (int i = 0; i < D; ++i)
+        size[i] = std::min(static_cast<double>(box.upper[i]) - static_cast<double>(box.lower[i]), 1e100);
     if constexpr (D == 2)
         return size.x + size.y;
     else
@@ -47,12 +87,12 @@ constexpr double half_surface(const Aabb<D>& box) {
 }
 
 /// Square of the distance from the point to the box, less what rounding may have added.
-template <int D>
-double distance_squared(const Aabb<D>& box, const Vec<D>& point) {
+template <template <int> class Box, int D>
+double distance_squared(const Box<D>& box, const Vec<D>& point) {
     constexpr double rounding = 1e-15;
     double sum = 0;
     for (int i = 0; i < D; ++i) {
-        const double outside = std::max(box.lower[i] - point[i], point[i] - box.upper[i]);
+        const double outside = std::max<double>(box.lower[i] - point[i], point[i] - box.upper[i]);
         const double least = std::max(outside - rounding * std::fabs(point[i]), 0.0);
         sum += least * least;
     }
@@ -89,7 +129,8 @@ class SlabTest {
 
     /// The fraction of the way, at least 0, at which it enters the box; more than `limit` (and than 1) when
     /// it does not, or later than that.
-    double enter(const Aabb<D>& box, double limit) const {
+    template <template <int> class Box>
+    double enter(const Box<D>& box, double limit) const {
         double enter = 0, leave = limit;
         for (int i = 0; i < D; ++i) {
             const double a = (box.lower[i] - to_lower_[i]) * per_length_[i];

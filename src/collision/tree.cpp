@@ -37,7 +37,7 @@ void Tree<D>::free(std::int32_t node) {
 }
 
 template <int D>
-std::int32_t Tree<D>::insert(const Aabb<D>& box, std::uint32_t payload) {
+std::int32_t Tree<D>::insert(const OuterBox<D>& box, std::uint32_t payload) {
     const std::int32_t leaf = allocate();
     nodes_[leaf].box = box;
     nodes_[leaf].child[1] = std::int32_t(payload);
@@ -54,7 +54,7 @@ void Tree<D>::remove(std::int32_t leaf) {
 }
 
 template <int D>
-void Tree<D>::move(std::int32_t leaf, const Aabb<D>& box) {
+void Tree<D>::move(std::int32_t leaf, const OuterBox<D>& box) {
     assert(nodes_[leaf].height == 0 && nodes_[leaf].leaf());
     const std::int32_t parent = nodes_[leaf].parent;
     // While the parent holds the new box, no better place is to be expected; one that the old box still
@@ -77,7 +77,7 @@ void Tree<D>::clear() {
 /// The node that, taken together with a new leaf of that box under a new parent, adds the least surface to
 /// the tree: that of the new parent and what all its ancestors grow by.
 template <int D>
-std::int32_t Tree<D>::best_sibling(const Aabb<D>& box) {
+std::int32_t Tree<D>::best_sibling(const OuterBox<D>& box) {
     struct Candidate {
         std::int32_t node;
         double growth;  ///< what the node's ancestors grow by
@@ -201,6 +201,21 @@ void Tree<D>::refit_upwards(std::int32_t node, bool rotate) {
 }
 
 template <int D>
+void Tree<D>::refit() {
+    downwards_.clear();
+    if (root_ != none && !nodes_[root_].leaf()) downwards_.push_back(root_);
+    for (std::size_t i = 0; i < downwards_.size(); ++i) {
+        for (const std::int32_t child : nodes_[downwards_[i]].child) {
+            if (!nodes_[child].leaf()) downwards_.push_back(child);
+        }
+    }
+    for (auto node = downwards_.rbegin(); node != downwards_.rend(); ++node) {
+        enclose_children(*node);
+        rotate_at(*node);
+    }
+}
+
+template <int D>
 void Tree<D>::build(std::span<const Entry> entries) {
     clear();
     leaf_count_ = std::int32_t(entries.size());
@@ -259,17 +274,23 @@ template <int D>
 std::size_t Tree<D>::split(std::span<std::int32_t> leaves) const {
     constexpr int bin_count = 16;
     struct Bin {
-        Aabb<D> box{};
+        OuterBox<D> box{};
         std::size_t count = 0;
 
-        void add(const Aabb<D>& other, std::size_t n) {
+        void add(const OuterBox<D>& other, std::size_t n) {
             box = count ? merged(box, other) : other;
             count += n;
         }
         double cost() const { return double(count) * half_surface(box); }
     };
     const auto center = [&](std::int32_t leaf) {
-        return 0.5 * (nodes_[leaf].box.lower + nodes_[leaf].box.upper);
+        constexpr double furthest = 1e100;  // so that what is infinite both ways has its centre at 0
+        Aabb<D> box = widened(nodes_[leaf].box);
+        for (int i = 0; i < D; ++i) {
+            box.lower[i] = std::max(box.lower[i], -furthest);
+            box.upper[i] = std::min(box.upper[i], furthest);
+        }
+        return 0.5 * (box.lower + box.upper);
     };
 
     Aabb<D> centers{center(leaves[0]), center(leaves[0])};
@@ -333,9 +354,8 @@ bool Tree<D>::validate() const {
         }
         const Node& left = nodes_[node.child[0]];
         const Node& right = nodes_[node.child[1]];
-        const Aabb<D> box = merged(left.box, right.box);
         if (left.parent != index || right.parent != index) return false;
-        if (box.lower != node.box.lower || box.upper != node.box.upper) return false;
+        if (node.box != merged(left.box, right.box)) return false;
         if (node.height != 1 + std::max(left.height, right.height)) return false;
         stack.push(node.child[0]);
         stack.push(node.child[1]);

@@ -36,25 +36,30 @@ class WalkStack {
 };
 
 /// A binary tree of boxes that finds what overlaps what. Every leaf carries a number of the caller's. The
-/// caller makes the boxes as fat as suits it. Inserting looks for the place that adds the least surface to
-/// the tree (branch and bound; Bittner, Hapala, Havran: Incremental BVH Construction, 2015), and swaps
-/// neighbours where that lessens it (Kopta et al.: Fast, Effective BVH Updates for Animated Scenes, 2012).
-/// The shape of the tree and the order of answers depend on nothing but the sequence of calls.
+/// caller makes the boxes as fat as suits it; they are kept in single precision, rounded outwards, and a
+/// question about what overlaps is rounded in the same way. Inserting looks for the place that adds the least
+/// surface to the tree (branch and bound; Bittner, Hapala, Havran: Incremental BVH Construction, 2015), and
+/// swaps neighbours where that lessens it (Kopta et al.: Fast, Effective BVH Updates for Animated Scenes,
+/// 2012). The shape of the tree and the order of answers depend on nothing but the sequence of calls.
 template <int D>
 class Tree {
   public:
     static constexpr std::int32_t none = -1;
 
     struct Entry {
-        Aabb<D> box;
+        OuterBox<D> box;
         std::uint32_t payload;
     };
 
     /// Adds a leaf and returns its index, which stays valid until the leaf is removed.
-    std::int32_t insert(const Aabb<D>& box, std::uint32_t payload);
+    std::int32_t insert(const OuterBox<D>& box, std::uint32_t payload);
     void remove(std::int32_t leaf);
     /// Gives the leaf another box.
-    void move(std::int32_t leaf, const Aabb<D>& box);
+    void move(std::int32_t leaf, const OuterBox<D>& box);
+    /// Gives new boxes to many leaves at once, `box_of(payload)` to each of `leaves`, and goes through the
+    /// whole tree once: cheaper than one by one where these are more than a tenth or so of all.
+    template <class BoxOf>
+    void move_all(std::span<const std::int32_t> leaves, BoxOf&& box_of);
 
     void clear();
     /// Replaces all by a tree built at once: entry i becomes leaf i (Wald: On fast Construction of SAH-based
@@ -63,7 +68,7 @@ class Tree {
     /// Builds the tree anew over the leaves that it has; they keep their indices.
     void rebuild();
 
-    const Aabb<D>& box(std::int32_t leaf) const { return nodes_[leaf].box; }
+    const OuterBox<D>& box(std::int32_t leaf) const { return nodes_[leaf].box; }
     std::uint32_t payload(std::int32_t leaf) const { return std::uint32_t(nodes_[leaf].child[1]); }
     /// Number of leaves.
     std::int32_t size() const { return leaf_count_; }
@@ -72,7 +77,7 @@ class Tree {
 
     /// Calls `visit(payload)` for every leaf whose box overlaps `box`.
     template <class Visitor>
-    void query(const Aabb<D>& box, Visitor&& visit) const;
+    void query(const OuterBox<D>& box, Visitor&& visit) const;
     /// Calls `visit(payload, other_payload)` for every overlapping pair of a leaf here and a leaf of `other`.
     /// With the tree itself as `other` it visits every pair of two different leaves once.
     template <class Visitor>
@@ -100,7 +105,7 @@ class Tree {
     /// A leaf has child[0] == none and its payload in child[1]. A free node has height −1 and in `parent` the
     /// next free node.
     struct Node {
-        Aabb<D> box{};
+        OuterBox<D> box{};
         std::int32_t parent = none;
         std::int32_t child[2] = {none, none};
         std::int32_t height = 0;
@@ -110,13 +115,14 @@ class Tree {
 
     std::int32_t allocate();
     void free(std::int32_t node);
-    std::int32_t best_sibling(const Aabb<D>& box);
+    std::int32_t best_sibling(const OuterBox<D>& box);
     void attach(std::int32_t leaf);
     void detach(std::int32_t leaf);
     void replace_child(std::int32_t parent, std::int32_t child, std::int32_t by);
     void enclose_children(std::int32_t node);
     void rotate_at(std::int32_t node);
     void refit_upwards(std::int32_t node, bool rotate);
+    void refit();
     void build_inner(std::vector<std::int32_t>& leaves);
     std::size_t split(std::span<std::int32_t> leaves) const;
 
@@ -124,23 +130,44 @@ class Tree {
     std::int32_t root_ = none;
     std::int32_t first_free_ = none;
     std::int32_t leaf_count_ = 0;
+    std::vector<std::int32_t> downwards_;  ///< working space: inner nodes, each before its children
 };
 
 template <int D>
+template <class BoxOf>
+void Tree<D>::move_all(std::span<const std::int32_t> leaves, BoxOf&& box_of) {
+    for (const std::int32_t leaf : leaves) {
+        const OuterBox<D>& box = box_of(payload(leaf));
+        // Who has gone away altogether needs another place.
+        if (overlaps(nodes_[leaf].box, box))
+            nodes_[leaf].box = box;
+        else
+            move(leaf, box);
+    }
+    refit();
+}
+
+template <int D>
 template <class Visitor>
-void Tree<D>::query(const Aabb<D>& box, Visitor&& visit) const {
-    if (root_ == none) return;
+void Tree<D>::query(const OuterBox<D>& box, Visitor&& visit) const {
+    if (root_ == none || !overlaps(nodes_[root_].box, box)) return;
     WalkStack<std::int32_t> stack;
-    stack.push(root_);
-    while (!stack.empty()) {
-        const Node& node = nodes_[stack.pop()];
-        if (!overlaps(node.box, box)) continue;
-        if (node.leaf()) {
-            visit(std::uint32_t(node.child[1]));
+    std::int32_t node = root_;  // overlaps
+    for (;;) {
+        if (nodes_[node].leaf()) {
+            visit(std::uint32_t(nodes_[node].child[1]));
         } else {
-            stack.push(node.child[1]);
-            stack.push(node.child[0]);
+            const std::int32_t first = nodes_[node].child[0], second = nodes_[node].child[1];
+            const bool takes_first = overlaps(nodes_[first].box, box);
+            const bool takes_second = overlaps(nodes_[second].box, box);
+            if (takes_first && takes_second) stack.push(second);
+            if (takes_first || takes_second) {
+                node = takes_first ? first : second;
+                continue;
+            }
         }
+        if (stack.empty()) return;
+        node = stack.pop();
     }
 }
 

@@ -28,7 +28,7 @@ void LoadModel<D>::sum(const BodyView<D>& view, double time, std::span<Load<D>> 
         loads[i] = applied[i];
         loads[i].force += (m.mass * m.gravity_scale) * gravity;
     }
-    forces.add_loads(view, time, loads);
+    forces.add_loads(view, bodies, time, loads);
 }
 
 namespace {

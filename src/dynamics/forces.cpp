@@ -17,10 +17,11 @@ void push(Load<D>& load, const Vec<D>& force, const Vec<D>& arm) {
     load.torque += cross(arm, force);
 }
 
-/// What each kind of generator does; `all` bodies are those with an inverse mass.
+/// What each kind of generator does; those that act on all act on the listed bodies with an inverse mass.
 template <int D>
 struct Act {
     const BodyView<D>& bodies;
+    std::span<const std::uint32_t> listed;
     std::span<Load<D>> loads;
 
     Vec<D> arm(std::uint32_t i, const Vec<D>& point_in_body) const {
@@ -39,7 +40,7 @@ struct Act {
     void operator()(const TimedImpulse<D>&) const {}
     void operator()(const Drag<D>& d) const {
         if (d.body) return drag(d, d.body->index);
-        for (std::uint32_t i = 0; i < bodies.states.size(); ++i) drag(d, i);
+        for (const std::uint32_t i : listed) drag(d, i);
     }
     void drag(const Drag<D>& d, std::uint32_t i) const {
         if (!dynamic(bodies.masses[i])) return;
@@ -47,14 +48,14 @@ struct Act {
         loads[i].force -= (d.linear + d.quadratic * length(v)) * v;
     }
     void operator()(const Wind<D>& w) const {
-        for (std::uint32_t i = 0; i < bodies.states.size(); ++i) {
+        for (const std::uint32_t i : listed) {
             if (!dynamic(bodies.masses[i])) continue;
             const Vec<D> u = w.velocity - bodies.states[i].velocity;
             loads[i].force += (0.5 * w.density * bodies.masses[i].cross_section * length(u)) * u;
         }
     }
     void operator()(const PointGravity<D>& g) const {
-        for (std::uint32_t i = 0; i < bodies.states.size(); ++i) {
+        for (const std::uint32_t i : listed) {
             if (!dynamic(bodies.masses[i])) continue;
             const Vec<D> r = bodies.states[i].position - g.center;
             const double d = length(r);
@@ -114,11 +115,15 @@ ForceId<D> Forces<D>::add(const ForceDefinition<D>& definition) {
     const std::uint32_t index = slots_.acquire();
     if (index == generators_.size()) generators_.emplace_back();
     generators_[index] = {definition, true, false};
+    if (const auto* spring = std::get_if<Spring<D>>(&definition.kind); spring && spring->a)
+        ties_.add(index, spring->a->index, spring->b.index);
     return slots_.template id<ForceId<D>>(index);
 }
 
 template <int D>
 void Forces<D>::remove(ForceId<D> id) {
+    const auto* spring = std::get_if<Spring<D>>(&generators_[id.index].definition.kind);
+    if (spring && spring->a) ties_.remove(id.index);
     generators_[id.index] = {};
     slots_.release(id.index);
 }
@@ -132,21 +137,23 @@ void Forces<D>::remove_all_of(BodyId<D> body) {
 }
 
 template <int D>
-void Forces<D>::add_loads(const BodyView<D>& bodies, double time, std::span<Load<D>> loads) const {
+void Forces<D>::add_loads(const BodyView<D>& bodies, std::span<const std::uint32_t> listed, double time,
+                          std::span<Load<D>> loads) const {
     for (const Generator& g : generators_) {
-        if (active(g, time)) std::visit(Act<D>{bodies, loads}, g.definition.kind);
+        if (active(g, time)) std::visit(Act<D>{bodies, listed, loads}, g.definition.kind);
     }
 }
 
 template <int D>
-void Forces<D>::mark_fields(double time, std::span<std::uint8_t> varies) const {
+void Forces<D>::mark_fields(double time, std::span<const std::uint32_t> listed,
+                            std::span<std::uint8_t> varies) const {
     for (const Generator& g : generators_) {
         if (!active(g, time)) continue;
         const auto& kind = g.definition.kind;
         const auto* drag = std::get_if<Drag<D>>(&kind);
         if (std::holds_alternative<Wind<D>>(kind) || std::holds_alternative<PointGravity<D>>(kind) ||
             (drag && !drag->body)) {
-            std::fill(varies.begin(), varies.end(), std::uint8_t{1});
+            for (const std::uint32_t i : listed) varies[i] = 1;
         } else if (drag) {
             varies[drag->body->index] = 1;
         } else if (const auto* spring = std::get_if<Spring<D>>(&kind)) {

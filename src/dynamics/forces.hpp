@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "carom/forces.hpp"
+#include "core/adjacency.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 
@@ -28,11 +29,14 @@ class Forces {
     bool contains(ForceId<D> id) const { return slots_.contains(id); }
     int count() const { return static_cast<int>(slots_.count()); }
 
-    /// Adds to `loads` (by body index) what the generators do at `time` to the dynamic bodies.
-    void add_loads(const BodyView<D>& bodies, double time, std::span<Load<D>> loads) const;
+    /// Adds to `loads` (by body index) what the generators do at `time` to the dynamic bodies that are
+    /// listed; those of others are left in any state.
+    void add_loads(const BodyView<D>& bodies, std::span<const std::uint32_t> listed, double time,
+                   std::span<Load<D>> loads) const;
 
-    /// Marks (by body index) the bodies whose load depends on where they are or how they move.
-    void mark_fields(double time, std::span<std::uint8_t> varies) const;
+    /// Marks (by body index) the listed bodies whose load depends on where they are or how they move.
+    void mark_fields(double time, std::span<const std::uint32_t> listed,
+                     std::span<std::uint8_t> varies) const;
 
     /// Applies the timed impulses that have come due: `hit(body, impulse, point in the body's frame or
     /// none)`.
@@ -57,13 +61,10 @@ class Forces {
         }
     }
 
-    /// Visits the pairs of bodies that a spring joins.
+    /// Visits the bodies that a spring ties to this one.
     template <class Visit>
-    void each_spring(Visit&& visit) const {
-        for (const Generator& g : generators_) {
-            const auto* spring = g.in_use ? std::get_if<Spring<D>>(&g.definition.kind) : nullptr;
-            if (spring && spring->a) visit(spring->a->index, spring->b.index);
-        }
+    void each_tied(std::uint32_t body, Visit&& visit) const {
+        ties_.each(body, [&](std::uint32_t, std::uint32_t other) { visit(other); });
     }
 
     /// Visits every generator, and whether its timed impulse has been given.
@@ -106,6 +107,7 @@ class Forces {
 
     Slots slots_;
     std::vector<Generator> generators_;
+    Adjacency ties_;  ///< springs between two bodies, by generator
 };
 
 }  // namespace carom::detail

@@ -156,7 +156,8 @@ void Couplings<D>::pass(const RecordView<D>& bodies) {
         const View view = look_at<biased>(row, bodies);
         if constexpr (biased) {
             // A blow is not kept: it would strike again.
-            const float kept = steady_share(row.impulse * row.impulse, row.impulse * row.before) * row.impulse;
+            const float kept =
+                steady_share(row.impulse * row.impulse, row.impulse * row.before) * row.impulse;
             row.before = row.impulse;
             // The impulses turn into their new directions (see JointPass::re_aim).
             push(row.effects, bodies, -row.impulse);

@@ -33,7 +33,8 @@ struct JointInput {
 inline JointStep<float> joint_step(double h) {
     constexpr float mended_share = 0.7f;
     constexpr double mending_speed = 4;  // m/s and rad/s
-    return {static_cast<float>(h), static_cast<float>(1 / h), mended_share, static_cast<float>(mending_speed * h)};
+    return {static_cast<float>(h), static_cast<float>(1 / h), mended_share,
+            static_cast<float>(mending_speed * h)};
 }
 
 }  // namespace carom::detail

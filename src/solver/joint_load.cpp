@@ -151,8 +151,8 @@ class BoundMass {
             for (int j = 0; j < count_; ++j) k[i][j] = compliance(rows_[i], rows_[j]);
             k[i][count_] = compliance(rows_[i], row);
         }
-        // The matrix is symmetric and positive, so that elimination needs no pivots; rows that say what others
-        // say already drop out.
+        // The matrix is symmetric and positive, so that elimination needs no pivots; rows that say what
+        // others say already drop out.
         double taken = 0;
         for (int i = 0; i < count_; ++i) {
             if (!(k[i][i] > 1e-9 * compliance(rows_[i], rows_[i]))) continue;
@@ -195,7 +195,8 @@ double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveK
         if (kind == DriveKind::turn) return mass.share_of({{}, 1, 1});
     } else {
         for (int i = 0; i < 3; ++i) {
-            const bool bound = L.angular == AngularPart::locked || (L.angular == AngularPart::across && i > 0);
+            const bool bound =
+                L.angular == AngularPart::locked || (L.angular == AngularPart::across && i > 0);
             if (bound) mass.add_row({{}, pose.axis_a(i), pose.axis_a(i)});
         }
         if (L.angular == AngularPart::square) {
@@ -208,14 +209,15 @@ double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveK
     return 1;
 }
 
-/// With stiffness κ and damping γ a unit of mass, and g = κ h/4 + γ/2, the impulse −h m (κ C + g (s + s')) for
-/// the stretch C and the speeds s and s' at the start and the end comes out of a row with the mass m / share.
+/// With stiffness κ and damping γ a unit of mass, and g = κ h/4 + γ/2, the impulse −h m (κ C + g (s + s'))
+/// for the stretch C and the speeds s and s' at the start and the end comes out of a row with the mass m /
+/// share.
 SpringRow<float> spring_row(SpringSettings& spring, double h, double share) {
     if (spring.frequency == 0) return {};
     prepare_spring(spring, h);
     const double push = h * share * (0.25 * h * spring.stiffness + 0.5 * spring.damping);
-    return {static_cast<float>(h * share * spring.stiffness / (1 + push)), static_cast<float>(push / (1 + push)),
-            static_cast<float>(std::min(spring.most * h, 1e37))};
+    return {static_cast<float>(h * share * spring.stiffness / (1 + push)),
+            static_cast<float>(push / (1 + push)), static_cast<float>(std::min(spring.most * h, 1e37))};
 }
 
 float limited(double value) { return static_cast<float>(std::clamp(value, -1e18, 1e18)); }
@@ -363,11 +365,11 @@ JointErrors errors(const JointRecord<D>& joint, const JointPose<D>& pose) {
     return e;
 }
 
-#define CAROM_INSTANTIATE(D)                                                                             \
-    template JointPose<D> pose_of(const JointRecord<D>&, std::span<const BodyState<D>>,                  \
-                                  std::span<const BodyMass<D>>, bool);                                   \
-    template Measured<D> measure(const DriveSettings&, const JointPose<D>&);                             \
-    template JointErrors errors(const JointRecord<D>&, const JointPose<D>&);                             \
+#define CAROM_INSTANTIATE(D)                                                            \
+    template JointPose<D> pose_of(const JointRecord<D>&, std::span<const BodyState<D>>, \
+                                  std::span<const BodyMass<D>>, bool);                  \
+    template Measured<D> measure(const DriveSettings&, const JointPose<D>&);            \
+    template JointErrors errors(const JointRecord<D>&, const JointPose<D>&);            \
     template const std::array<JointLoader<D>, layouts<D>.size()>& joint_loaders<D>();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

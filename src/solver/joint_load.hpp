@@ -13,9 +13,9 @@ namespace carom::detail {
 /// The two bodies of a joint, with its frames and anchors, as they are now.
 template <int D>
 struct JointPose {
-    Rotation<D> frame_a{}, frame_b{};  ///< in the world
-    Vec<D> arm_a{}, arm_b{};           ///< from the centres of mass to the anchors
-    Vec<D> gap{};                      ///< from anchor a to anchor b
+    Rotation<D> frame_a{}, frame_b{};   ///< in the world
+    Vec<D> arm_a{}, arm_b{};            ///< from the centres of mass to the anchors
+    Vec<D> gap{};                       ///< from anchor a to anchor b
     Vec<D> velocity_a{}, velocity_b{};  ///< of the centres of mass
     Angular<D> spin_a{}, spin_b{};
     double angle = 0;  ///< 2D: of b against a, whole turns included
@@ -23,9 +23,7 @@ struct JointPose {
     Vec<D> axis_a(int i) const { return axis(frame_a, i); }
     Vec<D> axis_b(int i) const { return axis(frame_b, i); }
     /// Velocity of anchor b against anchor a.
-    Vec<D> speed() const {
-        return velocity_b + cross(spin_b, arm_b) - velocity_a - cross(spin_a, arm_a);
-    }
+    Vec<D> speed() const { return velocity_b + cross(spin_b, arm_b) - velocity_a - cross(spin_a, arm_a); }
     /// The same against the point of a that is at anchor b now.
     Vec<D> speed_along_line() const { return speed() - cross(spin_a, gap); }
 

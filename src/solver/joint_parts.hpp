@@ -32,8 +32,8 @@ struct JointPass {
         if constexpr (!biased) add(rows.total, rows.wrench);
     }
 
-    /// Replaces what the kept impulses were on the bodies by what they are along the new directions, as far as
-    /// they are steady (see `steady_share`).
+    /// Replaces what the kept impulses were on the bodies by what they are along the new directions, as far
+    /// as they are steady (see `steady_share`).
     CAROM_INLINE void re_aim() {
         const Wrench<D, F> old = rows.wrench;
         keep(steady_share(link.likeness(old, old), link.likeness(old, rows.before)));
@@ -104,15 +104,17 @@ struct JointPass {
             rows.kept.linear += change;
             link.push(g.at_anchors(change));
             if constexpr (biased)
-                link.shift(g.at_anchors(-point_impulse(link, g.arm_a.middle, g.arm_b.middle, to_mend(g.gap))));
+                link.shift(
+                    g.at_anchors(-point_impulse(link, g.arm_a.middle, g.arm_b.middle, to_mend(g.gap))));
         } else if constexpr (L.linear == LinearPart::held) {
             auto& held = rows.linear;
             if constexpr (biased) held.offset = held.spring.pull * g.gap + held.spring.keep * held.before;
             Vec<D, F>& p = rows.kept.linear;
-            const Vec<D, F> next = cut_to(
-                Vec<D, F>(held.spring.keep * p - point_impulse(link, g.arm_a.middle, g.arm_b.middle,
-                                                               Vec<D, F>(held.offset + held.spring.keep * g.speed(link)))),
-                held.spring.most);
+            const Vec<D, F> next =
+                cut_to(Vec<D, F>(held.spring.keep * p -
+                                 point_impulse(link, g.arm_a.middle, g.arm_b.middle,
+                                               Vec<D, F>(held.offset + held.spring.keep * g.speed(link)))),
+                       held.spring.most);
             link.push(g.at_anchors(Vec<D, F>(next - p)));
             p = next;
             if constexpr (!biased) held.before = g.speed(link);
@@ -136,7 +138,8 @@ struct JointPass {
             const Turned<D, F> s = across(0), t = across(1);
             const Vec<3, F> as = cross(arm_a, s.middle), at = cross(arm_a, t.middle);
             const Vec<3, F> bs = cross(g.arm_b.middle, s.middle), bt = cross(g.arm_b.middle, t.middle);
-            const Vec<3, F> mass = link.wa.mass + link.wb.mass, ias = link.wa.inertia * as, ibs = link.wb.inertia * bs;
+            const Vec<3, F> mass = link.wa.mass + link.wb.mass, ias = link.wa.inertia * as,
+                            ibs = link.wb.inertia * bs;
             const F xx = dot(s.middle, each(mass, s.middle)) + dot(as, ias) + dot(bs, ibs);
             const F xy = dot(t.middle, each(mass, s.middle)) + dot(at, ias) + dot(bt, ibs);
             const F yy = dot(t.middle, each(mass, t.middle)) + dot(at, link.wa.inertia * at) +
@@ -144,13 +147,14 @@ struct JointPass {
             const auto along_both = [&](const Vec<2, F>& v) CAROM_INLINE_LAMBDA {
                 return g.at_b(v.x * s.middle + v.y * t.middle);
             };
-            const Vec<2, F> change = -inverse_times(xx, xy, yy, Vec<2, F>{dot(s.end, speed), dot(t.end, speed)});
+            const Vec<2, F> change =
+                -inverse_times(xx, xy, yy, Vec<2, F>{dot(s.end, speed), dot(t.end, speed)});
             p[0] = p[0] + change.x;
             p[1] = p[1] + change.y;
             link.push(along_both(change));
             if constexpr (biased)
-                link.shift(along_both(-inverse_times(
-                    xx, xy, yy, to_mend(Vec<2, F>{dot(s.now, g.gap), dot(t.now, g.gap)}))));
+                link.shift(along_both(
+                    -inverse_times(xx, xy, yy, to_mend(Vec<2, F>{dot(s.now, g.gap), dot(t.now, g.gap)}))));
         }
     }
 
@@ -218,8 +222,8 @@ struct JointPass {
         const Vec<3, F> ks = k * s;
         const Vec<3, F> spin = link.spin();
         const auto impulse = [&](const Vec<3, F>& wanted) CAROM_INLINE_LAMBDA {
-            const Vec<2, F> l =
-                inverse_times(dot(s, ks), dot(t, ks), dot(t, k * t), Vec<2, F>{dot(s, wanted), dot(t, wanted)});
+            const Vec<2, F> l = inverse_times(dot(s, ks), dot(t, ks), dot(t, k * t),
+                                              Vec<2, F>{dot(s, wanted), dot(t, wanted)});
             return -(l.x * s + l.y * t);
         };
         const Vec<3, F> change = impulse(spin - dot(a.end, spin) * a.end);
@@ -236,10 +240,10 @@ struct JointPass {
             const Angular<D, F> error = held.turn + relative_turn<D, F>(link.a.turned, link.b.turned);
             held.offset = held.spring.pull * error + held.spring.keep * held.before;
         }
-        const Angular<D, F> next = cut_to(
-            Angular<D, F>(held.spring.keep * l -
-                          mass * Angular<D, F>(held.offset + held.spring.keep * link.spin())),
-            held.spring.most);
+        const Angular<D, F> next =
+            cut_to(Angular<D, F>(held.spring.keep * l -
+                                 mass * Angular<D, F>(held.offset + held.spring.keep * link.spin())),
+                   held.spring.most);
         link.push(couple(Angular<D, F>(next - l)));
         l = next;
         Angular<D, F>& rub = rows.kept.angular.friction;
@@ -296,9 +300,10 @@ struct JointPass {
         if constexpr (L.drives[i] == DriveKind::stretch)
             return inverse_or_zero(compliance(n.middle, g.arm_a.middle, g.arm_b.middle, link.wa, link.wb));
         if constexpr (L.drives[i] == DriveKind::slide)
-            return inverse_or_zero(compliance(n.middle, Vec<D, F>(g.arm_a.middle + g.gap_middle), g.arm_b.middle,
-                                              link.wa, link.wb));
-        if constexpr (L.drives[i] == DriveKind::turn && D == 2) return inverse_or_zero(link.angular_compliance());
+            return inverse_or_zero(compliance(n.middle, Vec<D, F>(g.arm_a.middle + g.gap_middle),
+                                              g.arm_b.middle, link.wa, link.wb));
+        if constexpr (L.drives[i] == DriveKind::turn && D == 2)
+            return inverse_or_zero(link.angular_compliance());
         if constexpr (L.drives[i] == DriveKind::turn && D == 3)
             return inverse_or_zero(dot(n.middle, link.angular_compliance() * n.middle));
     }
@@ -339,7 +344,8 @@ struct JointPass {
             const SpringRow<F>& spring = base.spring;
             if constexpr (biased) base.offset = spring.pull * (now - base.rest) + spring.keep * base.before;
             set(kept.spring,
-                cut_to(spring.keep * kept.spring - mass * (base.offset + spring.keep * rate), spring.most), F(1));
+                cut_to(spring.keep * kept.spring - mass * (base.offset + spring.keep * rate), spring.most),
+                F(1));
             set(kept.motor, cut_to(kept.motor - mass * (rate - base.motor_speed), base.motor_most), F(1));
             const auto ranged = base.high > base.low;
             const F above = now - base.low, below = select(ranged, base.high - now, F(1e18f));

@@ -14,7 +14,7 @@ namespace carom::detail {
 struct JointSpan {
     float* rows = nullptr;  ///< of `JointRows<D, F, L>`
     const std::uint32_t* a = nullptr;
-    const std::uint32_t* b = nullptr;           ///< slots of the bodies, one a lane
+    const std::uint32_t* b = nullptr;          ///< slots of the bodies, one a lane
     const std::uint8_t* some_fixed = nullptr;  ///< by block: has it a body that cannot be pushed?
     std::size_t blocks = 0;
 };

@@ -18,12 +18,12 @@ struct JointPassesIn {
         const Motion<D, F>& m = body.motion;
         const std::uint32_t first = bodies.first_movable;
         if constexpr (D == 2) {
-            scatter_quads_from(first, bodies.records + 4, slots, body_stride<2>, m.moved.x, m.moved.y, m.turned,
-                               body.weight.inertia);
+            scatter_quads_from(first, bodies.records + 4, slots, body_stride<2>, m.moved.x, m.moved.y,
+                               m.turned, body.weight.inertia);
         } else {
             const Symmetric3<F>& i = body.weight.inertia;
-            scatter_quads_from(first, bodies.records + 8, slots, body_stride<3>, m.moved.x, m.moved.y, m.moved.z,
-                               i.yy);
+            scatter_quads_from(first, bodies.records + 8, slots, body_stride<3>, m.moved.x, m.moved.y,
+                               m.moved.z, i.yy);
             scatter_quads_from(first, bodies.records + 12, slots, body_stride<3>, m.turned.x, m.turned.y,
                                m.turned.z, i.zz);
         }
@@ -54,23 +54,27 @@ struct JointPassesIn {
     template <Layout L>
     static void start(const JointSpan& span, const RecordView<D>& bodies) {
         using Rows = JointRows<D, F, L>;
-        each_block<Rows, false>(span, bodies, [](Rows& rows, Body<D, F>& a, Body<D, F>& b) CAROM_INLINE_LAMBDA {
-            Link<D, F>{a.motion, b.motion, a.weight, b.weight, rows.wrench}.add(rows.wrench);
-        });
+        each_block<Rows, false>(
+            span, bodies, [](Rows& rows, Body<D, F>& a, Body<D, F>& b) CAROM_INLINE_LAMBDA {
+                Link<D, F>{a.motion, b.motion, a.weight, b.weight, rows.wrench}.add(rows.wrench);
+            });
     }
 
     template <bool biased, Layout L>
     static void solve(const JointSpan& span, const RecordView<D>& bodies, const JointStep<float>& s) {
         using Rows = JointRows<D, F, L>;
         const JointStep<F> step{F(s.h), F(s.inverse_h), F(s.share), F(s.most_way)};
-        each_block<Rows, biased>(span, bodies, [&](Rows& rows, Body<D, F>& a, Body<D, F>& b) CAROM_INLINE_LAMBDA {
-            JointPass<biased, D, F, L>(rows, a.motion, b.motion, a.weight, b.weight, step).run();
-        });
+        each_block<Rows, biased>(
+            span, bodies, [&](Rows& rows, Body<D, F>& a, Body<D, F>& b) CAROM_INLINE_LAMBDA {
+                JointPass<biased, D, F, L>(rows, a.motion, b.motion, a.weight, b.weight, step).run();
+            });
     }
 
     template <std::size_t... i>
     static constexpr JointPrograms<D> make(std::index_sequence<i...>) {
-        return {width, {JointProgram<D>{start<layouts<D>[i]>, solve<true, layouts<D>[i]>, solve<false, layouts<D>[i]>}...}};
+        return {width,
+                {JointProgram<D>{start<layouts<D>[i]>, solve<true, layouts<D>[i]>,
+                                 solve<false, layouts<D>[i]>}...}};
     }
     static constexpr JointPrograms<D> all = make(std::make_index_sequence<layouts<D>.size()>());
 };

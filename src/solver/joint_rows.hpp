@@ -25,8 +25,8 @@ template <class F>
 struct JointStep {
     F h{};
     F inverse_h{};
-    F share{};      ///< of an error of position that is put right in a sub-step
-    F most_way{};   ///< the furthest that something is put right in a sub-step, m and rad
+    F share{};     ///< of an error of position that is put right in a sub-step
+    F most_way{};  ///< the furthest that something is put right in a sub-step, m and rad
 };
 
 // ---- What is kept from sub-step to sub-step, and from step to step: impulses of the rows ----
@@ -51,10 +51,10 @@ using LinearImpulse =
                        std::conditional_t<part == LinearPart::line, std::array<F, D - 1>, Vec<D, F>>>;
 
 template <int D, class F, AngularPart part>
-using AngularImpulse = std::conditional_t<
-    part == AngularPart::none, Nothing<1>,
-    std::conditional_t<part == AngularPart::held, HeldImpulses<D, F>,
-                       std::conditional_t<part == AngularPart::square, F, Angular<D, F>>>>;
+using AngularImpulse =
+    std::conditional_t<part == AngularPart::none, Nothing<1>,
+                       std::conditional_t<part == AngularPart::held, HeldImpulses<D, F>,
+                                          std::conditional_t<part == AngularPart::square, F, Angular<D, F>>>>;
 
 template <class F, int count>
 using AllDriveImpulses = std::conditional_t<count == 0, Nothing<2>, std::array<DriveImpulses<F>, count>>;
@@ -113,17 +113,17 @@ struct HeldTurn {
 
 template <int D, class F>
 struct DriveBase {
-    Vec<D, F> axis{};   ///< turns with a; unused in the plane for turns
-    F low{}, high{};    ///< of angles: against that of the start of the step
+    Vec<D, F> axis{};  ///< turns with a; unused in the plane for turns
+    F low{}, high{};   ///< of angles: against that of the start of the step
     SpringRow<F> spring{};
     F rest{}, offset{}, before{};
     F motor_speed{}, motor_most{};
 };
 
 template <int D, class F, LinearPart part>
-using LinearBase = std::conditional_t<
-    part == LinearPart::line, LineBase<D, F>,
-    std::conditional_t<part == LinearPart::held, HeldPoint<D, F>, Nothing<3>>>;
+using LinearBase =
+    std::conditional_t<part == LinearPart::line, LineBase<D, F>,
+                       std::conditional_t<part == LinearPart::held, HeldPoint<D, F>, Nothing<3>>>;
 
 template <int D, class F, AngularPart part>
 using AngularBase = std::conditional_t<
@@ -164,9 +164,10 @@ struct TurnSeries {
         : sine(F(1) - z * (F(1.0f / 6) -
                            z * (F(1.0f / 120) -
                                 z * (F(1.0f / 5040) - z * (F(1.0f / 362880) - z * F(1.0f / 39916800)))))),
-          cosine(F(0.5f) - z * (F(1.0f / 24) -
-                                z * (F(1.0f / 720) -
-                                     z * (F(1.0f / 40320) - z * (F(1.0f / 3628800) - z * F(1.0f / 479001600)))))) {}
+          cosine(F(0.5f) -
+                 z * (F(1.0f / 24) -
+                      z * (F(1.0f / 720) -
+                           z * (F(1.0f / 40320) - z * (F(1.0f / 3628800) - z * F(1.0f / 479001600)))))) {}
 };
 
 /// What a body has turned by since the step began, and turns on by.
@@ -176,8 +177,9 @@ struct Turning {
     TurnSeries<F> series;
     F ahead;  ///< time in which arms are turned on, s
 
-    /// What turns by so much in a sub-step that it cannot be followed is not: beyond 0.2 rad, and less from 0.14
-    /// rad on. With impulses and velocities along the same directions, a pass takes energy away whatever happens.
+    /// What turns by so much in a sub-step that it cannot be followed is not: beyond 0.2 rad, and less from
+    /// 0.14 rad on. With impulses and velocities along the same directions, a pass takes energy away whatever
+    /// happens.
     CAROM_INLINE Turning(const Motion<D, F>& m, F h)
         : angle(m.turned), spin(m.w), series(angular_dot(m.turned, m.turned)) {
         const F squared = h * h * angular_dot(m.w, m.w);
@@ -282,8 +284,8 @@ struct Geometry {
 };
 
 template <bool biased, int D, class F>
-CAROM_INLINE Geometry<D, F> geometry(const Anchors<D, F>& base, const Turning<D, F>& a, const Turning<D, F>& b,
-                                     const Motion<D, F>& ma, const Motion<D, F>& mb) {
+CAROM_INLINE Geometry<D, F> geometry(const Anchors<D, F>& base, const Turning<D, F>& a,
+                                     const Turning<D, F>& b, const Motion<D, F>& ma, const Motion<D, F>& mb) {
     Geometry<D, F> g;
     const Vec<D, F> change_a = a.change(base.arm_a), change_b = b.change(base.arm_b);
     g.arm_a = turned<biased, D, F>(base.arm_a + change_a, a.spin, a.ahead);
@@ -302,8 +304,12 @@ CAROM_INLINE void add_point_compliance(Symmetric3<F>& k, const Weight<3, F>& w, 
     const F o = F(0);
     const Vec<3, F> x{o, r.z, -r.y}, y{-r.z, o, r.x}, z{r.y, -r.x, o};  // r × each axis
     const Vec<3, F> ix = w.inertia * x, iy = w.inertia * y, iz = w.inertia * z;
-    k = k + Symmetric3<F>{w.mass.x + dot(x, ix), w.mass.y + dot(y, iy), w.mass.z + dot(z, iz),
-                          dot(x, iy), dot(x, iz), dot(y, iz)};
+    k = k + Symmetric3<F>{w.mass.x + dot(x, ix),
+                          w.mass.y + dot(y, iy),
+                          w.mass.z + dot(z, iz),
+                          dot(x, iy),
+                          dot(x, iz),
+                          dot(y, iz)};
 }
 
 /// The impulse between two anchors that changes their relative velocity by `wanted`.

@@ -107,7 +107,8 @@ void JointSolver<D>::fill(const JointInput<D>& input, const Batch& batch, const 
         float* to = rows(batch) + block * loader.fields * batch.width;
         for (std::size_t lane = 0; lane < batch.width; ++lane) {
             const std::size_t place = batch.first_place + block * batch.width + lane;
-            const bool fixed = a_[place] < input.bodies.first_movable || b_[place] < input.bodies.first_movable;
+            const bool fixed =
+                a_[place] < input.bodies.first_movable || b_[place] < input.bodies.first_movable;
             some_fixed_[batch.first_block + block] |= fixed ? 1 : 0;
             if (joint_[place] == none) continue;
             JointRecord<D>& joint = input.joints[joint_[place]];
@@ -126,8 +127,9 @@ const JointProgram<D>& JointSolver<D>::program(const Batch& batch) const {
 template <int D>
 JointSpan JointSolver<D>::span(const Batch& batch, const Part& part) {
     const std::size_t place = batch.first_place + part.begin * batch.width;
-    return {rows(batch) + part.begin * joint_loaders<D>()[batch.layout].fields * batch.width, a_.data() + place,
-            b_.data() + place, some_fixed_.data() + batch.first_block + part.begin, part.size()};
+    return {rows(batch) + part.begin * joint_loaders<D>()[batch.layout].fields * batch.width,
+            a_.data() + place, b_.data() + place, some_fixed_.data() + batch.first_block + part.begin,
+            part.size()};
 }
 
 template <int D>
@@ -161,7 +163,8 @@ void JointSolver<D>::store(const JointInput<D>& input, const Crew& crew) const {
         for (std::size_t i = part.begin * width; i < part.end * width; ++i) {
             const std::uint32_t joint = joint_[batch.first_place + i];
             if (joint == none) continue;
-            loader.store(input.joints[joint], rows(batch) + i / width * loader.fields * width + i % width, width);
+            loader.store(input.joints[joint], rows(batch) + i / width * loader.fields * width + i % width,
+                         width);
         }
     });
 }

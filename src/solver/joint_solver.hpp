@@ -51,8 +51,8 @@ class JointSolver {
 
     void colour(const JointInput<D>& input);
     void make_batches(const JointInput<D>& input);
-    /// `visit(batch, blocks)` for a share of the blocks of each batch. Where bodies are written the workers wait
-    /// for one another after each colour, and the first one does the overflow alone.
+    /// `visit(batch, blocks)` for a share of the blocks of each batch. Where bodies are written the workers
+    /// wait for one another after each colour, and the first one does the overflow alone.
     template <class Visit>
     void each_share(const Crew& crew, bool writes_bodies, Visit&& visit) const;
     void fill(const JointInput<D>& input, const Batch& batch, const Part& part);
@@ -63,9 +63,9 @@ class JointSolver {
 
     JointStep<float> step_{};
     const JointPrograms<D>* wide_ = nullptr;
-    std::vector<std::uint64_t> taken_;   ///< by slot: colours of its joints
-    std::vector<std::uint8_t> colour_;   ///< by active joint
-    std::vector<Batch> batches_;         ///< in the order in which they are solved
+    std::vector<std::uint64_t> taken_;          ///< by slot: colours of its joints
+    std::vector<std::uint8_t> colour_;          ///< by active joint
+    std::vector<Batch> batches_;                ///< in the order in which they are solved
     std::vector<std::uint32_t> joint_, a_, b_;  ///< by place: joint (or none) and slots of its bodies
     std::vector<std::uint8_t> some_fixed_;      ///< by block
     std::vector<Line> lines_;

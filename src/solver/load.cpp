@@ -17,12 +17,6 @@ void Solver<D>::make_room() {
 }
 
 template <int D>
-bool Solver<D>::is_loaded(std::uint32_t slot) const {
-    return slot != BodySlots::still && slot < slots_.size() && slots_.body(slot) != BodySlots::none &&
-           (touching_[slot] > 0 || (slot < jointed_.size() && jointed_[slot] != 0));
-}
-
-template <int D>
 void Solver<D>::set_free_axes(const SolverInput<D>& input) {
     view_.free_axes = nullptr;
     if (!input.some_locked) return;
@@ -116,7 +110,7 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
     template void Solver<D>::make_room();                                     \
     template void Solver<D>::set_free_axes(const SolverInput<D>&);            \
     template void Solver<D>::load_bodies(const SolverInput<D>&, const Crew&); \
-    template bool Solver<D>::is_loaded(std::uint32_t) const; \
+    template bool Solver<D>::is_loaded(std::uint32_t) const;                  \
     template void Solver<D>::prepare_contacts(const Crew&);                   \
     template void Solver<D>::store_bodies(const SolverInput<D>&, const Crew&) const;
 CAROM_INSTANTIATE(2)

@@ -126,14 +126,12 @@ void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
     });
     crew.meet();
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin(bodies, h_); });
-    if (crew.is_first()) {
+    crew.alone([&] {
         note_impacts();
         find_impacts();
-    }
-    crew.meet();
+    });
     step_through(input.substeps, crew);
-    if (crew.is_first()) bounce(input);
-    crew.meet();
+    crew.alone([&] { bounce(input); });
     joints_.store(joint_input(input), crew);
     store_bodies(input, crew);
 }
@@ -149,11 +147,10 @@ void Solver<D>::step_through(int substeps, const Crew& crew) {
         each_share(crew, false,
                    [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.find_pushing(span); });
         crew.meet();
-        if (crew.is_first()) {
+        crew.alone([&] {
             some_struck_ = find_struck();
             if (some_struck_) settle_struck<true>();
-        }
-        crew.meet();
+        });
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
         joints_.relax(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {

@@ -30,6 +30,17 @@ void World<D>::set_scheduler(std::shared_ptr<Scheduler> scheduler) {
 }
 
 template <int D>
+void World<D>::set_profiling(bool on) {
+    if (on != state_->profiler.has_value()) on ? void(state_->profiler.emplace()) : state_->profiler.reset();
+}
+
+template <int D>
+const StepProfile& World<D>::profile() const {
+    static const StepProfile none;
+    return state_->profiler ? state_->profiler->profile : none;
+}
+
+template <int D>
 void World<D>::set_gravity(const Vec<D>& gravity) {
     require_finite(gravity, "gravity");
     state_->definition.gravity = gravity;
@@ -47,6 +58,12 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.types.emplace_back();
         w.infos.emplace_back();
         w.applied.emplace_back();
+        w.tree_of.push_back(of_fixed);
+        w.moving.push_back(stands_still);
+        w.place.emplace_back();
+        w.loads.emplace_back();
+        w.varies.emplace_back();
+        w.fixed_contacts_of.push_back(0);
     }
     w.states[i] = {};
     w.masses[i] = {};
@@ -65,12 +82,29 @@ Shape<D> core_of(const Shape<D>& shape) {
 }
 
 template <int D>
+void make_into(WorldState<D>& w, std::uint32_t i, const ShapeDefinition<D>& definition, Shape<D> shape) {
+    ShapeRecord<D>& s = w.shapes[i];
+    const Filter& filter = definition.filter;
+    w.company[i] = {filter.category, filter.mask,       s.body,
+                    filter.group,    definition.sensor, shape.kind == ShapeKind::terrain};
+    s.shape = std::move(shape);
+    s.definition = definition;
+    s.core = core_of(s.shape);
+}
+
+template <int D>
 ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
                      Shape<D> shape) {
     const std::uint32_t i = w.shape_slots.acquire();
-    if (i == w.shapes.size()) w.shapes.emplace_back();
-    w.shapes[i] = {std::move(shape), definition, body};
-    w.shapes[i].core = core_of(w.shapes[i].shape);
+    if (i == w.shapes.size()) {
+        w.shapes.emplace_back();
+        w.company.emplace_back();
+        w.fat_boxes.emplace_back();
+        w.has_new_box.push_back(0);
+        w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
+    }
+    w.shapes[i] = {{}, {}, body};
+    make_into(w, i, definition, std::move(shape));
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -114,7 +148,9 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
         s.velocity = free_components<D>(m.locks, definition.velocity);
         s.angular_velocity = free_spin<D>(m.locks, definition.angular_velocity);
         w.movable.push_back(i);
+        w.roused.push_back(i);
     }
+    w.tree_of[i] = w.tree_for(i);
     for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
     const auto id = w.body_slots.template id<BodyId<D>>(i);
     w.body_ids.push_back(id);
@@ -139,6 +175,7 @@ void World<D>::remove_body(BodyId<D> body) {
     w.bullets -= w.infos[i].bullet;
     w.infos[i] = {};
     w.masses[i] = {};
+    w.types[i] = BodyType::fixed;  // so that no list of what moves keeps it
     std::erase(w.to_wake, i);
     std::erase(w.movable, i);
     std::erase(w.body_ids, body);
@@ -199,16 +236,12 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
         w.remove_contacts_of_shape(i);
         w.remove_visits_of(i);
     }
-    w.shapes[i].shape = std::move(made);
-    w.shapes[i].definition = definition;
-    w.shapes[i].core = core_of(w.shapes[i].shape);
+    make_into(w, i, definition, std::move(made));
     w.update_mass(body);
     w.forget_manifolds_of(body);
     w.remove_leaf(i);
     w.insert_leaf(i);
-    for (ContactRecord<D>& c : w.contacts) {
-        if (c.shape_a == i || c.shape_b == i) w.set_surface(c);
-    }
+    w.each_contact_of_shape(i, [&](std::uint32_t contact) { w.set_surface(w.contacts[contact]); });
     w.place_visits_anew(i);
 }
 
@@ -229,8 +262,7 @@ void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
     };
     change(i, k);
     change(k, i);
-    w.remove_contacts_if(
-        [&](const ContactRecord<D>& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(i, k); });
+    w.remove_contacts_between(i, k);
     for (const ShapeId<D>& id : w.infos[i].shapes) w.mark_moved(id.index);
 }
 
@@ -297,6 +329,7 @@ void World<D>::set_velocity(BodyId<D> body, const Vec<D>& velocity) {
     require_finite(velocity, "velocity");
     if (state_->types[i] == BodyType::fixed) throw Error("velocity: a fixed body has none");
     state_->states[i].velocity = free_components<D>(state_->masses[i].locks, velocity);
+    state_->roused.push_back(i);
     state_->wake(i);
 }
 
@@ -306,6 +339,7 @@ void World<D>::set_angular_velocity(BodyId<D> body, const Angular<D>& angular_ve
     require_finite(angular_velocity, "angular_velocity");
     if (state_->types[i] == BodyType::fixed) throw Error("angular_velocity: a fixed body has none");
     state_->states[i].angular_velocity = free_spin<D>(state_->masses[i].locks, angular_velocity);
+    state_->roused.push_back(i);
     state_->wake(i);
 }
 
@@ -340,8 +374,10 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         w.states[i].angular_velocity = {};
     } else {
         w.movable.push_back(i);
+        w.roused.push_back(i);
     }
     w.update_mass(i);
+    w.tree_of[i] = w.tree_for(i);
     for (const ShapeId<D>& id : w.infos[i].shapes) w.insert_leaf(id.index);
 }
 

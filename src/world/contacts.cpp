@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/remove_each.hpp"
 #include "world/state.hpp"
 
 // What is done about each contact, and where it is kept. Contacts that carry impulses are the solver's, and
@@ -25,12 +26,12 @@ void WorldState<D>::add_contact(const PairKey& key) {
     c.body_b = shapes[key.b].body;
     c.on_fixed = types[c.body_a] == BodyType::fixed || types[c.body_b] == BodyType::fixed;
     set_surface(c);
-    facet_contacts += c.facet != no_part;
+    contact_links.add(static_cast<std::uint32_t>(contacts.size()), contact_list(key.a, c.on_fixed),
+                      contact_list(key.b, c.on_fixed));
     contacts.push_back(c);
     caches.emplace_back();
     loosen(static_cast<std::uint32_t>(contacts.size() - 1));
     if (!c.on_fixed) return;
-    fixed_contacts_of.resize(states.size(), 0);
     if (++fixed_contacts_of[mover(c)] == 2) regrouped.push_back(mover(c));
 }
 
@@ -38,12 +39,8 @@ void WorldState<D>::add_contact(const PairKey& key) {
 /// have to be looked at together.
 template <int D>
 void WorldState<D>::part_from_others() {
-    if (regrouped.empty()) return;
-    std::ranges::sort(regrouped);
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        const ContactRecord<D>& c = contacts[i];
-        if (c.place && c.on_fixed && std::ranges::binary_search(regrouped, mover(c))) stop_carrying(i);
-    }
+    for (const std::uint32_t body : regrouped)
+        each_contact_of(body, true, [&](std::uint32_t contact) { stop_carrying(contact); });
 }
 
 template <int D>
@@ -54,10 +51,14 @@ void WorldState<D>::remove_contact(std::size_t contact) {
     const ContactRecord<D>& c = contacts[i];
     if (c.loose != c.nowhere) loose[c.loose] = c.nowhere;
     if (c.on_fixed) --fixed_contacts_of[mover(c)];
-    facet_contacts -= c.facet != no_part;
     pairs.erase(PairKey{c.shape_a, c.shape_b, c.facet});
-    if (c.touching && c.facet == no_part) dropped_contacts.push_back({names(c.shape_a, c.shape_b)});
+    if (c.touching) {
+        const ShapePair<D> pair = names(c.shape_a, c.shape_b);
+        c.facet == no_part ? dropped_contacts.push_back({pair}) : terrain_changes.push_back(pair);
+    }
+    contact_links.remove(i);
     if (i != last) {
+        contact_links.renumber(last, i);
         contacts[i] = contacts[last];
         caches[i] = caches[last];
         if (contacts[i].place) solver.rename(contacts[i], i);
@@ -69,21 +70,41 @@ void WorldState<D>::remove_contact(std::size_t contact) {
 
 template <int D>
 void WorldState<D>::remove_contacts_of(std::uint32_t body) {
-    remove_contacts_if([&](const ContactRecord<D>& c) { return c.body_a == body || c.body_b == body; });
+    for (const ShapeId<D>& id : infos[body].shapes)
+        each_contact_of_shape(id.index, [&](std::uint32_t contact) { picked.push_back(contact); });
+    remove_picked_contacts();
+}
+
+template <int D>
+void WorldState<D>::remove_contacts_between(std::uint32_t body, std::uint32_t other) {
+    for (const bool on_fixed : {false, true}) {
+        each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
+            const ContactRecord<D>& c = contacts[contact];
+            if (c.body_a == other || c.body_b == other) picked.push_back(contact);
+        });
+    }
+    remove_picked_contacts();
 }
 
 template <int D>
 void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
-    remove_contacts_if([&](const ContactRecord<D>& c) { return c.shape_a == shape || c.shape_b == shape; });
+    each_contact_of_shape(shape, [&](std::uint32_t contact) { picked.push_back(contact); });
+    remove_picked_contacts();
+}
+
+template <int D>
+void WorldState<D>::remove_picked_contacts() {
+    remove_each(picked, contacts, [&](std::uint32_t contact) { remove_contact(contact); });
 }
 
 /// The shapes of the body, or its centre of mass, changed.
 template <int D>
 void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        if (contacts[i].body_a != body && contacts[i].body_b != body) continue;
-        stop_carrying(i);
-        caches[i].forget();
+    for (const ShapeId<D>& id : infos[body].shapes) {
+        each_contact_of_shape(id.index, [&](std::uint32_t contact) {
+            stop_carrying(contact);
+            caches[contact].forget();
+        });
     }
 }
 
@@ -140,9 +161,13 @@ void WorldState<D>::follow_bodies() {
         leave_solver(i);
     });
     if (!changed) return;
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        const ContactRecord<D>& c = contacts[i];
-        if (!c.place && any_moves(c.body_a, c.body_b)) loosen(i);
+    for (const std::uint32_t body : awake) {
+        if (!solver.changed(body)) continue;
+        for (const bool on_fixed : {false, true}) {
+            each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
+                if (!contacts[contact].place) loosen(contact);
+            });
+        }
     }
 }
 
@@ -184,19 +209,20 @@ void WorldState<D>::place_contacts() {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                                    \
-    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const; \
-    template void WorldState<D>::add_contact(const PairKey&);                   \
-    template void WorldState<D>::part_from_others();                            \
-    template void WorldState<D>::remove_contact(std::size_t);                   \
-    template void WorldState<D>::remove_contacts_of(std::uint32_t);             \
-    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);       \
-    template void WorldState<D>::forget_manifolds_of(std::uint32_t);            \
-    template void WorldState<D>::loosen(std::uint32_t);                         \
-    template void WorldState<D>::stop_carrying(std::uint32_t);                  \
-    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;      \
-    template void WorldState<D>::take_loose();                                  \
-    template void WorldState<D>::follow_bodies();                               \
+#define CAROM_INSTANTIATE(D)                                                            \
+    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const;         \
+    template void WorldState<D>::add_contact(const PairKey&);                           \
+    template void WorldState<D>::part_from_others();                                    \
+    template void WorldState<D>::remove_picked_contacts();                              \
+    template void WorldState<D>::remove_contacts_of(std::uint32_t);                     \
+    template void WorldState<D>::remove_contacts_between(std::uint32_t, std::uint32_t); \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);               \
+    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                    \
+    template void WorldState<D>::loosen(std::uint32_t);                                 \
+    template void WorldState<D>::stop_carrying(std::uint32_t);                          \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;              \
+    template void WorldState<D>::take_loose();                                          \
+    template void WorldState<D>::follow_bodies();                                       \
     template void WorldState<D>::place_contacts();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

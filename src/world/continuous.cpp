@@ -137,10 +137,8 @@ void WorldState<D>::list_fast_contacts() {
     std::ranges::sort(fast);
     fixed_contacts.clear();
     if (fast.empty()) return;
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-        if (contacts[i].on_fixed && std::ranges::binary_search(fast, mover(contacts[i])))
-            list_fixed_contact(i);
-    }
+    for (const std::uint32_t body : fast)
+        each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
     sort_fixed_contacts();
 }
 
@@ -162,12 +160,24 @@ void WorldState<D>::stop_at_obstacles() {
         const ContactRecord<D>& c = contacts[f.contact];
         if (!lets_pass(c, f.body, f.other)) stop_at(f.body, f.shape, f.other, c.facet);
     }
-    if (bullets == 0) return;
-    for (const ContactRecord<D>& c : contacts) {
-        if (c.on_fixed || c.passing) continue;
+    if (bullets > 0) stop_bullets();
+}
+
+template <int D>
+void WorldState<D>::stop_bullets() {
+    for (const std::uint32_t body : awake) {
+        if (!infos[body].bullet) continue;
+        each_contact_of(body, false, [&](std::uint32_t contact) { picked.push_back(contact); });
+    }
+    std::ranges::sort(picked);
+    picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+    for (const std::uint32_t contact : picked) {
+        const ContactRecord<D>& c = contacts[contact];
+        if (c.passing) continue;
         if (infos[c.body_a].bullet) stop_at(c.body_a, c.shape_a, c.shape_b, c.facet);
         if (infos[c.body_b].bullet) stop_at(c.body_b, c.shape_b, c.shape_a, c.facet);
     }
+    picked.clear();
 }
 
 template <int D>
@@ -237,7 +247,7 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, const ContactCache<D>& cache
         b = coasted(sb, mb, definition.gravity, elapsed);
         const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
         const bool last = i + 1 == most_advances;
-        double distance = gap_along(shape_a, shape_b, b_in_a, axis);
+        double distance = least_gap_between<D>(shape_a, shape_b, c.facet, b_in_a, axis);
         if (distance <= near || last) {
             const auto gap = gap_between<D>(shape_a, shape_b, c.facet, b_in_a);
             if (!gap) return;

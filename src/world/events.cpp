@@ -37,8 +37,9 @@ void WorldState<D>::report_contacts() {
     std::ranges::sort(touch_changes);
     for (const std::uint32_t i : touch_changes) {
         const ContactRecord<D>& c = contacts[i];
-        if (c.facet != no_part) continue;
-        if (c.touching)
+        if (c.facet != no_part)
+            terrain_changes.push_back(names(c.shape_a, c.shape_b));
+        else if (c.touching)
             report_begin(c);
         else
             events.contact_ends.push_back({names(c.shape_a, c.shape_b)});
@@ -49,34 +50,37 @@ void WorldState<D>::report_contacts() {
 /// A shape touches a terrain as long as it touches any of its facets.
 template <int D>
 void WorldState<D>::report_terrain() {
-    std::swap(terrain_before, terrain_touched);
-    terrain_touched.clear();
-    for (std::uint32_t i = 0; i < contacts.size() && facet_contacts > 0; ++i) {
-        const ContactRecord<D>& c = contacts[i];
-        if (c.touching && c.facet != no_part) terrain_touched.push_back({names(c.shape_a, c.shape_b), i});
-    }
-    const auto by_shapes = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
-        const auto key = [](const TerrainTouch<D>& t) {
-            return std::tuple(t.pair.shape_a.index, t.pair.shape_a.generation, t.pair.shape_b.index,
-                              t.pair.shape_b.generation);
-        };
-        return key(one) < key(other);
+    const auto key = [](const ShapePair<D>& pair) {
+        return std::tuple(pair.shape_a.index, pair.shape_a.generation, pair.shape_b.index,
+                          pair.shape_b.generation);
     };
-    std::ranges::stable_sort(terrain_touched, by_shapes);
-    const auto same = [](const TerrainTouch<D>& one, const TerrainTouch<D>& other) {
-        return one.pair == other.pair;
-    };
-    terrain_touched.erase(std::unique(terrain_touched.begin(), terrain_touched.end(), same),
-                          terrain_touched.end());
-    const auto missing_in = [&](const std::vector<TerrainTouch<D>>& list, const TerrainTouch<D>& touch) {
-        return !std::ranges::binary_search(list, touch, by_shapes);
-    };
-    for (const TerrainTouch<D>& touch : terrain_touched) {
-        if (missing_in(terrain_before, touch)) report_begin(current(touch.contact));
+    std::ranges::sort(terrain_changes, {}, key);
+    terrain_changes.erase(std::unique(terrain_changes.begin(), terrain_changes.end()), terrain_changes.end());
+    for (const ShapePair<D>& pair : terrain_changes) {
+        const std::uint32_t touch = first_touching_facet(pair);
+        const PairKey shapes_of_it = PairKey::of(pair.shape_a.index, pair.shape_b.index);
+        const bool touches = touch != ContactRecord<D>::nowhere;
+        if (touches && terrain_touched.insert(shapes_of_it)) report_begin(current(touch));
+        if (!touches && terrain_touched.contains(shapes_of_it)) {
+            terrain_touched.erase(shapes_of_it);
+            events.contact_ends.push_back({pair});
+        }
     }
-    for (const TerrainTouch<D>& touch : terrain_before) {
-        if (missing_in(terrain_touched, touch)) events.contact_ends.push_back({touch.pair});
-    }
+    terrain_changes.clear();
+}
+
+/// The first of the contacts in which the two shapes touch, or `nowhere`.
+template <int D>
+std::uint32_t WorldState<D>::first_touching_facet(const ShapePair<D>& pair) const {
+    std::uint32_t first = ContactRecord<D>::nowhere;
+    if (!shape_slots.contains(pair.shape_a) || !shape_slots.contains(pair.shape_b)) return first;
+    const bool a_ground = shapes[pair.shape_a.index].shape.kind == ShapeKind::terrain;
+    const std::uint32_t ground = a_ground ? pair.shape_a.index : pair.shape_b.index;
+    each_contact_of_shape(a_ground ? pair.shape_b.index : pair.shape_a.index, [&](std::uint32_t contact) {
+        const ContactRecord<D>& c = contacts[contact];
+        if (c.touching && (c.shape_a == ground || c.shape_b == ground)) first = std::min(first, contact);
+    });
+    return first;
 }
 
 /// The work that a contact did on the two bodies is, of each of its impulses, the impulse times the mean of
@@ -135,15 +139,29 @@ bool WorldState<D>::overlap(std::uint32_t shape_a, std::uint32_t shape_b) const 
 template <int D>
 void WorldState<D>::sense() {
     std::swap(events.sensor_ends, dropped_visits);
-    for (SensorPair& pair : sensor_pairs) {
-        const std::uint32_t a = shapes[pair.sensor].body, b = shapes[pair.visitor].body;
-        if (!any_moves(a, b) && !pair.placed_anew) continue;
+    if (sensor_pairs.empty()) return placed_anew.clear();
+    for (const std::uint32_t body : awake) {
+        for (const ShapeId<D>& id : infos[body].shapes)
+            sensor_links.each(id.index, [&](std::uint32_t pair, std::uint32_t) { picked.push_back(pair); });
+    }
+    for (const std::uint32_t shape : placed_anew) {
+        sensor_links.each(shape, [&](std::uint32_t pair, std::uint32_t) {
+            if (sensor_pairs[pair].placed_anew) picked.push_back(pair);
+        });
+    }
+    placed_anew.clear();
+    std::ranges::sort(picked);
+    picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+    for (const std::uint32_t i : picked) {
+        SensorPair& pair = sensor_pairs[i];
         pair.placed_anew = false;
+        const std::uint32_t a = shapes[pair.sensor].body, b = shapes[pair.visitor].body;
         const bool was_inside = pair.inside;
         pair.inside = !infos[a].disabled && !infos[b].disabled && overlap(pair.sensor, pair.visitor);
         if (pair.inside && !was_inside) events.sensor_begins.push_back({names(pair.sensor, pair.visitor)});
         if (!pair.inside && was_inside) events.sensor_ends.push_back({names(pair.sensor, pair.visitor)});
     }
+    picked.clear();
 }
 
 #define CAROM_INSTANTIATE(D)                                                        \

@@ -137,7 +137,7 @@ struct Folder {
     }
     template <int D>
     void operator()(const ContactCache<D>& c) {
-        all(c.pose.position, c.pose.rotation, c.normal, c.way, c.count);
+        all(c.pose.position, c.pose.rotation, c.normal, c.gap, c.way, c.count);
         for (int i = 0; i < c.count; ++i) all(c.points[i].on_a, c.points[i].on_b, c.points[i].separation);
     }
     void operator()(const SpringSettings& s) { all(s.frequency, s.damping_ratio, s.rest, s.most); }
@@ -146,8 +146,9 @@ struct Folder {
     }
     template <int D>
     void operator()(const JointRecord<D>& j) {
-        all(j.body_a, j.body_b, j.layout, j.anchor_a, j.anchor_b, j.frame_a, j.frame_b, j.drives, j.held.linear,
-            j.held.angular, j.held.friction, j.wrench.force, j.wrench.on_a, j.wrench.on_b, j.before.force, j.before.on_a, j.before.on_b, j.kept);
+        all(j.body_a, j.body_b, j.layout, j.anchor_a, j.anchor_b, j.frame_a, j.frame_b, j.drives,
+            j.held.linear, j.held.angular, j.held.friction, j.wrench.force, j.wrench.on_a, j.wrench.on_b,
+            j.before.force, j.before.on_a, j.before.on_b, j.kept);
     }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>

@@ -4,7 +4,6 @@
 #include "joints/couplings.hpp"
 #include "joints/types.hpp"
 #include "math/check.hpp"
-#include "world/bonds.hpp"
 #include "world/state.hpp"
 
 // Joints: adding and removing them, changing and reading them, and what a step does about them.
@@ -42,10 +41,11 @@ void WorldState<D>::list_active_joints() {
 /// Who hangs on something that moves does not sleep.
 template <int D>
 void WorldState<D>::wake_jointed() {
-    each_bond([&](std::uint32_t a, std::uint32_t b) {
-        if (moving[a] != stands_still) wake(b);
-        if (moving[b] != stands_still) wake(a);
-    });
+    for (const std::uint32_t i : awake) {
+        bonds.each(i, [&](std::uint32_t, std::uint32_t other) {
+            if (moving[other] == stands_still) wake(other);
+        });
+    }
 }
 
 template <int D>
@@ -98,8 +98,7 @@ void part(WorldState<D>& w, const JointRecord<D>& joint, bool begins) {
     change_ignored(w.infos[a].jointed, b, begins);
     change_ignored(w.infos[b].jointed, a, begins);
     if (begins) {
-        w.remove_contacts_if(
-            [&](const ContactRecord<D>& c) { return std::minmax(c.body_a, c.body_b) == std::minmax(a, b); });
+        w.remove_contacts_between(a, b);
     } else {
         for (const ShapeId<D>& id : w.infos[a].shapes) w.mark_moved(id.index);
     }
@@ -130,11 +129,12 @@ void WorldState<D>::remove_joint(std::uint32_t joint) {
                 return false;
             },
             joint_definitions[other].kind);
-        names_it && other != joint ? remove_joint(other) : void(++i);
+        names_it&& other != joint ? remove_joint(other) : void(++i);
     }
     std::erase_if(couplings, [&](const CouplingRecord<D>& c) { return c.joint == joint; });
     const JointRecord<D>& record = joints[joint];
     wake_both(*this, record);
+    if (record.body_a != no_body) bonds.remove(joint);
     if (!joint_definitions[joint].collide) part(*this, record, false);
     std::erase(joint_ids, id);
     joint_slots.release(joint);
@@ -169,7 +169,8 @@ void validate_bodies(const WorldState<D>& w, const JointDefinition<D>& joint) {
     const std::uint32_t b = w.index(joint.b);
     const bool a_moves = joint.a && w.types[w.index(*joint.a)] == BodyType::dynamic;
     if (joint.a && joint.a->index == b) throw Error("a: a body is not joined to itself");
-    if (!a_moves && w.types[b] != BodyType::dynamic) throw Error("b: one of the two bodies has to be dynamic");
+    if (!a_moves && w.types[b] != BodyType::dynamic)
+        throw Error("b: one of the two bodies has to be dynamic");
 }
 
 template <int D>
@@ -276,6 +277,7 @@ JointId<D> World<D>::add_joint(const JointDefinition<D>& definition) {
     }
     const auto id = w.joint_slots.template id<JointId<D>>(i);
     w.joint_ids.push_back(id);
+    if (w.joints[i].body_a != no_body) w.bonds.add(i, w.joints[i].body_a, w.joints[i].body_b);
     if (!definition.collide) part(w, w.joints[i], true);
     wake_both(w, w.joints[i]);
     return id;
@@ -290,7 +292,8 @@ template <int D>
 void World<D>::set_joint(JointId<D> joint, const decltype(JointDefinition<D>::kind)& kind) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(joint);
-    if (kind.index() != w.joint_definitions[i].kind.index()) throw Error("kind: the joint is of another type");
+    if (kind.index() != w.joint_definitions[i].kind.index())
+        throw Error("kind: the joint is of another type");
     if (w.coupling_of(i)) throw Error("kind: pulleys, gears and racks do not change");
     JointRecord<D> changed = w.joints[i];
     std::visit(
@@ -361,8 +364,7 @@ void World<D>::set_target(JointId<D> joint, const Vec<D>& target) {
     require_finite(target, "target");
     kind->target = target;
     JointRecord<D>& record = w.joints[i];
-    record.anchor_a =
-        record.body_a == no_body ? target : apply_inverse(w.frame_of(record.body_a), target);
+    record.anchor_a = record.body_a == no_body ? target : apply_inverse(w.frame_of(record.body_a), target);
     wake_both(w, record);
 }
 
@@ -448,10 +450,10 @@ Angular<D> World<D>::joint_torque(JointId<D> joint) const {
 template class World<2>;
 template class World<3>;
 
-#define CAROM_INSTANTIATE(D)                                              \
-    template void detail::WorldState<D>::list_active_joints();            \
-    template void detail::WorldState<D>::wake_jointed();                  \
-    template void detail::WorldState<D>::break_joints(double);            \
+#define CAROM_INSTANTIATE(D)                                   \
+    template void detail::WorldState<D>::list_active_joints(); \
+    template void detail::WorldState<D>::wake_jointed();       \
+    template void detail::WorldState<D>::break_joints(double); \
     template void detail::WorldState<D>::remove_joints_of(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

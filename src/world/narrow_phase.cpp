@@ -73,7 +73,7 @@ void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>&
         p.separation = static_cast<float>(separation);
         p.impulse = p.total_impulse = 0;
         p.feature = mark.feature;
-        if (!c.on_fixed || !is_artefact_of_seam(c, a, b, p)) ++c.count;
+        if (!c.on_fixed || !is_artefact_of_seam(c, a, b, middle, separation)) ++c.count;
     }
 }
 

@@ -1,26 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/remove_each.hpp"
 #include "geometry/terrain.hpp"
 #include "world/state.hpp"
 
 namespace carom::detail {
 
 namespace {
-
-/// Boxes are made this much fatter than the shape, or an eighth of its size where that is less, so that a
-/// body that hardly moves keeps its box.
-constexpr double box_margin = 0.05;
-
-template <int D>
-Aabb<D> grown(const Aabb<D>& box, double margin, const Vec<D>& motion) {
-    Aabb<D> r;
-    for (int i = 0; i < D; ++i) {
-        r.lower[i] = box.lower[i] - margin + std::min(motion[i], 0.0);
-        r.upper[i] = box.upper[i] + margin + std::max(motion[i], 0.0);
-    }
-    return r;
-}
 
 /// A box that holds `box`, in the frame.
 template <int D>
@@ -39,79 +26,38 @@ Aabb<D> box_in(const Transform<D>& frame, const Aabb<D>& box) {
 
 }  // namespace
 
-template <int D>
-const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>& shape) const {
-    return (shape.in_fixed_tree ? fixed_tree : moving_tree).box(shape.leaf);
-}
-
-template <int D>
-void WorldState<D>::mark_moved(std::uint32_t shape) {
-    has_new_box.resize(shapes.size(), 0);
-    if (has_new_box[shape]) return;
-    has_new_box[shape] = 1;
-    moved_shapes.push_back(shape);
-}
-
-template <int D>
-void WorldState<D>::insert_leaf(std::uint32_t shape) {
-    ShapeRecord<D>& s = shapes[shape];
-    s.in_fixed_tree = types[s.body] == BodyType::fixed;
-    s.leaf = (s.in_fixed_tree ? fixed_tree : moving_tree).insert(bounds(s.shape, frame_of(s.body)), shape);
-    mark_moved(shape);
-}
-
-template <int D>
-void WorldState<D>::remove_leaf(std::uint32_t shape) {
-    ShapeRecord<D>& s = shapes[shape];
-    (s.in_fixed_tree ? fixed_tree : moving_tree).remove(s.leaf);
-    s.leaf = Tree<D>::none;
-}
-
-/// Gives a fat box to every shape that may leave its own in this step.
-template <int D>
-void WorldState<D>::refresh_boxes(double dt) {
-    for (const std::uint32_t body : awake) {
-        const Transform<D> placed = frame_of(body);
-        const Vec<D> way = states[body].velocity * dt;
-        const double spin =
-            std::sqrt(angular_dot(states[body].angular_velocity, states[body].angular_velocity));
-        for (const ShapeId<D>& id : infos[body].shapes) {
-            ShapeRecord<D>& s = shapes[id.index];
-            const Aabb<D> tight = bounds(s.shape, placed);
-            const Vec<D> size = tight.upper - tight.lower;
-            double smallest = size.x;
-            for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
-            // A point that turns by an angle about the centre of mass, at the distance r from it, comes no
-            // further than its arc, nor than 2 r. Of a ball only the middle counts.
-            const bool is_ball = s.shape.kind == ShapeKind::ball;
-            const double arm = is_ball ? length(s.shape.a - masses[body].center) : masses[body].radius;
-            const double turning = std::min(spin * dt, 2.0) * arm;
-            const double falling = length(definition.gravity) * dt * dt;
-            const Aabb<D> swept = grown(tight, turning + falling, way);
-            if (s.leaf != Tree<D>::none && contains(moving_tree.box(s.leaf), swept)) continue;
-            const double margin = std::min(box_margin, 0.125 * smallest);
-            moving_tree.move(s.leaf, grown(swept, margin, way));
-            mark_moved(id.index);
-        }
-    }
-}
-
 /// May the two shapes touch, or where one is a sensor, notice each other?
 template <int D>
 bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const {
-    const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
-    if (a.body == b.body || infos[a.body].disabled || infos[b.body].disabled) return false;
-    if (a.definition.sensor || b.definition.sensor) {
-        if (a.definition.sensor && b.definition.sensor) return false;
+    const Company &a = company[shape_a], &b = company[shape_b];
+    if (a.body == b.body) return false;
+    const bool senses = a.senses || b.senses;
+    if (senses) {
+        if (a.senses && b.senses) return false;
         if (types[a.body] == BodyType::fixed && types[b.body] == BodyType::fixed) return false;
-    } else {
-        if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) return false;
-        if (std::ranges::binary_search(infos[a.body].ignored, b.body)) return false;
-        if (std::ranges::binary_search(infos[a.body].jointed, b.body)) return false;
+    } else if (types[a.body] != BodyType::dynamic && types[b.body] != BodyType::dynamic) {
+        return false;
     }
-    const Filter &fa = a.definition.filter, &fb = b.definition.filter;
-    if (fa.group == fb.group && fa.group != 0) return fa.group > 0;
-    return (fa.mask & fb.category) != 0 && (fb.mask & fa.category) != 0;
+    const bool agreed = a.group == b.group && a.group != 0
+                            ? a.group > 0
+                            : (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
+    if (!agreed || infos[a.body].disabled || infos[b.body].disabled) return false;
+    return senses || (!std::ranges::binary_search(infos[a.body].ignored, b.body) &&
+                      !std::ranges::binary_search(infos[a.body].jointed, b.body));
+}
+
+/// Two shapes whose boxes overlap: where they, or facets of a terrain, are no pair yet, they become one.
+template <int D>
+void WorldState<D>::meet(std::uint32_t shape_a, std::uint32_t shape_b) {
+    const PairKey key = PairKey::of(shape_a, shape_b);
+    const Company &a = company[shape_a], &b = company[shape_b];
+    const bool on_ground =
+        (a.is_ground || b.is_ground) && !a.senses && !b.senses;  // sensors care for the whole
+    if ((!on_ground && pairs.contains(key)) || !may_meet(shape_a, shape_b)) return;
+    if (on_ground)
+        find_facets(shape_a, shape_b);
+    else
+        new_pairs.push_back(key);
 }
 
 /// Every pair of a shape whose box is new and a shape, or a facet of a terrain, that it overlaps becomes a
@@ -120,51 +66,53 @@ bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const
 template <int D>
 void WorldState<D>::find_pairs() {
     new_pairs.clear();
+    // Where many move, it is cheaper to look at all that do at once than to ask a tree for each.
+    constexpr std::size_t many = 64;
+    const bool crowded = moved_shapes.size() >= many && 4 * moved_shapes.size() >= moving_shapes.size();
+    if (crowded) {
+        crowd.find(moving_shapes, fat_boxes, has_new_box,
+                   [&](std::uint32_t shape, std::uint32_t other) { meet(shape, other); });
+    }
     for (const std::uint32_t shape : moved_shapes) {
-        const ShapeRecord<D>& s = shapes[shape];
-        if (!shape_slots.in_use(shape) || s.leaf == Tree<D>::none) continue;
-        const auto meet = [&](std::uint32_t other) {
-            if (shape == other || !may_meet(shape, other)) return;
-            if (is_terrain_contact(shape, other)) return find_facets(shape, other);
-            const PairKey key = PairKey::of(shape, other);
-            if (!pairs.contains(key)) new_pairs.push_back(key);
+        if (!shape_slots.in_use(shape)) continue;
+        const auto visit = [&](std::uint32_t other) {
+            // Two that are both new meet once.
+            if (shape != other && (!has_new_box[other] || shape < other)) meet(shape, other);
         };
-        const Aabb<D>& box = fat_box(s);
-        moving_tree.query(box, meet);
-        if (!s.in_fixed_tree) fixed_tree.query(box, meet);
+        const TreeKind own = tree_of[company[shape].body];
+        if (!crowded || own != of_moving) trees[of_moving].query(fat_boxes[shape], visit);
+        trees[of_resting].query(fat_boxes[shape], visit);
+        if (own != of_fixed) trees[of_fixed].query(fat_boxes[shape], visit);
     }
     for (const std::uint32_t shape : moved_shapes) has_new_box[shape] = 0;
     moved_shapes.clear();
+    take_up_pairs();
+}
 
+template <int D>
+void WorldState<D>::take_up_pairs() {
     std::sort(new_pairs.begin(), new_pairs.end());
     new_pairs.erase(std::unique(new_pairs.begin(), new_pairs.end()), new_pairs.end());
     regrouped.clear();
     for (const PairKey& key : new_pairs) {
         pairs.insert(key);
-        if (shapes[key.a].definition.sensor) {
-            sensor_pairs.push_back({key.a, key.b});
-        } else if (shapes[key.b].definition.sensor) {
-            sensor_pairs.push_back({key.b, key.a});
-        } else {
+        const bool a_senses = company[key.a].senses, b_senses = company[key.b].senses;
+        if (!a_senses && !b_senses) {
             add_contact(key);
+            continue;
         }
+        sensor_links.add(static_cast<std::uint32_t>(sensor_pairs.size()), key.a, key.b);
+        sensor_pairs.push_back(a_senses ? SensorPair{key.a, key.b} : SensorPair{key.b, key.a});
+        placed_anew.push_back(key.a);
     }
     part_from_others();
-}
-
-/// Does a shape meet the facets of a terrain here? Sensors care for the whole.
-template <int D>
-bool WorldState<D>::is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const {
-    const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
-    if (a.definition.sensor || b.definition.sensor) return false;
-    return a.shape.kind == ShapeKind::terrain || b.shape.kind == ShapeKind::terrain;
 }
 
 template <int D>
 void WorldState<D>::find_facets(std::uint32_t shape_a, std::uint32_t shape_b) {
     const bool a_terrain = shapes[shape_a].shape.kind == ShapeKind::terrain;
     const ShapeRecord<D>& ground = shapes[a_terrain ? shape_a : shape_b];
-    const Aabb<D>& box = fat_box(shapes[a_terrain ? shape_b : shape_a]);
+    const Aabb<D> box = widened(fat_boxes[a_terrain ? shape_b : shape_a]);
     ground.shape.terrain->query(box_in(frame_of(ground.body), box), [&](std::uint32_t facet) {
         const PairKey key = PairKey::of(shape_a, shape_b, facet);
         if (!pairs.contains(key)) new_pairs.push_back(key);
@@ -196,33 +144,39 @@ void WorldState<D>::set_surface(ContactRecord<D>& c) const {
 /// Forgets the pairs whose boxes parted; only a box that is new can have left another.
 template <int D>
 void WorldState<D>::drop_pairs() {
-    if (moved_shapes.empty()) return;
-    for (std::size_t i = 0; i < contacts.size();) {
-        const ContactRecord<D>& c = contacts[i];
-        const bool changed = has_new_box[c.shape_a] || has_new_box[c.shape_b];
-        !changed || are_near(c) ? void(++i) : remove_contact(i);
+    for (const std::uint32_t shape : moved_shapes) {
+        for (const bool on_fixed : {false, true}) {
+            contact_links.each(contact_list(shape, on_fixed), [&](std::uint32_t contact, std::uint32_t list) {
+                const std::uint32_t other = shape_of_list(list);
+                if (!are_near(contact, shape, other)) picked.push_back(contact);
+            });
+        }
     }
-    for (std::size_t i = 0; i < sensor_pairs.size();) {
-        const SensorPair& pair = sensor_pairs[i];
-        const bool near = overlaps(fat_box(shapes[pair.sensor]), fat_box(shapes[pair.visitor]));
-        near ? void(++i) : remove_visit(i);
+    remove_picked_contacts();
+    if (sensor_pairs.empty()) return;
+    for (const std::uint32_t shape : moved_shapes) {
+        sensor_links.each(shape, [&](std::uint32_t pair, std::uint32_t other) {
+            if (!overlaps(fat_boxes[shape], fat_boxes[other])) picked.push_back(pair);
+        });
     }
+    remove_picked_visits();
 }
 
 template <int D>
-bool WorldState<D>::are_near(const ContactRecord<D>& c) const {
-    const ShapeRecord<D>&a = shapes[c.shape_a], &b = shapes[c.shape_b];
-    if (!overlaps(fat_box(a), fat_box(b))) return false;
-    if (c.facet == no_part) return true;
-    const bool a_terrain = a.shape.kind == ShapeKind::terrain;
-    const ShapeRecord<D>& ground = a_terrain ? a : b;
-    const Aabb<D> box = box_in(frame_of(ground.body), fat_box(a_terrain ? b : a));
-    return overlaps(box, ground.shape.terrain->facet(c.facet).bounds());
+bool WorldState<D>::are_near(std::uint32_t contact, std::uint32_t shape_a, std::uint32_t shape_b) const {
+    if (!overlaps(fat_boxes[shape_a], fat_boxes[shape_b])) return false;
+    const bool a_ground = company[shape_a].is_ground;
+    if (!a_ground && !company[shape_b].is_ground) return true;
+    const ShapeRecord<D>& ground = shapes[a_ground ? shape_a : shape_b];
+    const Aabb<D> box = box_in(frame_of(ground.body), widened(fat_boxes[a_ground ? shape_b : shape_a]));
+    return overlaps(box, ground.shape.terrain->facet(contacts[contact].facet).bounds());
 }
 
 template <int D>
 void WorldState<D>::place_visits_anew(std::uint32_t shape) {
-    for (SensorPair& pair : sensor_pairs) pair.placed_anew |= pair.sensor == shape || pair.visitor == shape;
+    placed_anew.push_back(shape);
+    sensor_links.each(shape,
+                      [&](std::uint32_t pair, std::uint32_t) { sensor_pairs[pair].placed_anew = true; });
 }
 
 template <int D>
@@ -230,29 +184,31 @@ void WorldState<D>::remove_visit(std::size_t sensor_pair) {
     const SensorPair& pair = sensor_pairs[sensor_pair];
     pairs.erase(PairKey::of(pair.sensor, pair.visitor));
     if (pair.inside) dropped_visits.push_back({names(pair.sensor, pair.visitor)});
-    sensor_pairs[sensor_pair] = sensor_pairs.back();
+    const std::size_t last = sensor_pairs.size() - 1;
+    sensor_links.remove(static_cast<std::uint32_t>(sensor_pair));
+    if (sensor_pair != last) {
+        sensor_pairs[sensor_pair] = sensor_pairs[last];
+        sensor_links.renumber(static_cast<std::uint32_t>(last), static_cast<std::uint32_t>(sensor_pair));
+    }
     sensor_pairs.pop_back();
 }
 
 template <int D>
-void WorldState<D>::remove_visits_of(std::uint32_t shape) {
-    for (std::size_t i = 0; i < sensor_pairs.size();) {
-        const bool its_own = sensor_pairs[i].sensor == shape || sensor_pairs[i].visitor == shape;
-        its_own ? remove_visit(i) : void(++i);
-    }
+void WorldState<D>::remove_picked_visits() {
+    remove_each(picked, sensor_pairs, [&](std::uint32_t pair) { remove_visit(pair); });
 }
 
-#define CAROM_INSTANTIATE(D)                                                             \
-    template const Aabb<D>& WorldState<D>::fat_box(const ShapeRecord<D>&) const;         \
-    template void WorldState<D>::mark_moved(std::uint32_t);                              \
-    template void WorldState<D>::insert_leaf(std::uint32_t);                             \
-    template void WorldState<D>::remove_leaf(std::uint32_t);                             \
-    template void WorldState<D>::refresh_boxes(double);                                  \
-    template bool WorldState<D>::is_terrain_contact(std::uint32_t, std::uint32_t) const; \
-    template void WorldState<D>::find_pairs();                                           \
-    template void WorldState<D>::drop_pairs();                                           \
-    template void WorldState<D>::remove_visits_of(std::uint32_t);                        \
-    template void WorldState<D>::place_visits_anew(std::uint32_t);                       \
+template <int D>
+void WorldState<D>::remove_visits_of(std::uint32_t shape) {
+    sensor_links.each(shape, [&](std::uint32_t pair, std::uint32_t) { picked.push_back(pair); });
+    remove_picked_visits();
+}
+
+#define CAROM_INSTANTIATE(D)                                       \
+    template void WorldState<D>::find_pairs();                     \
+    template void WorldState<D>::drop_pairs();                     \
+    template void WorldState<D>::remove_visits_of(std::uint32_t);  \
+    template void WorldState<D>::place_visits_anew(std::uint32_t); \
     template void WorldState<D>::set_surface(ContactRecord<D>&) const;
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -80,40 +80,6 @@ std::vector<Found<D>> all_hits(const Walk& walk, const Cast& cast) {
 
 namespace detail {
 
-/// Boxes are made to hold what a body will do in a step as far as its velocity tells. One that was struck may
-/// have left its own since; it gets a new box, so that between steps every box holds its shape.
-template <int D>
-void WorldState<D>::keep_in_boxes(double dt) {
-    const double falling = length(definition.gravity) * dt * dt;
-    for (std::size_t k = 0; k < awake.size(); ++k) {
-        const std::uint32_t body = awake[k];
-        const BodyState<D>&from = before[k], &to = states[body];
-        const Vec<D> way = from.velocity * dt, moved = to.position - from.position;
-        // A point at the distance r has turned by at most 2 |q − p| r (by |q − p| r in the plane).
-        double square;
-        const Rotation<D>&p = from.rotation, &q = to.rotation;
-        if constexpr (D == 2)
-            square = (q.c - p.c) * (q.c - p.c) + (q.s - p.s) * (q.s - p.s);
-        else
-            square = 4 * ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) + (q.z - p.z) * (q.z - p.z) +
-                          (q.w - p.w) * (q.w - p.w));
-        const double turned = std::sqrt(square) * masses[body].radius;
-        bool as_foreseen = true;
-        for (int i = 0; i < D; ++i) {
-            as_foreseen &= moved[i] - turned >= std::min(way[i], 0.0) - falling &&
-                           moved[i] + turned <= std::max(way[i], 0.0) + falling;
-        }
-        if (as_foreseen) continue;
-        const Transform<D> placed = frame_of(body);
-        for (const ShapeId<D>& id : infos[body].shapes) {
-            const Aabb<D> tight = bounds(shapes[id.index].shape, placed);
-            if (contains(moving_tree.box(shapes[id.index].leaf), tight)) continue;
-            moving_tree.move(shapes[id.index].leaf, tight);
-            mark_moved(id.index);
-        }
-    }
-}
-
 template <int D>
 bool WorldState<D>::is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const {
     const ShapeRecord<D>& s = shapes[shape];
@@ -130,8 +96,8 @@ template <int D>
 template <class Visitor>
 void WorldState<D>::cast_through_trees(const Vec<D>& origin, const Vec<D>& translation, const Vec<D>& half,
                                        Visitor&& visit) const {
-    const double limit = fixed_tree.cast(origin, translation, half, 1.0, visit);
-    moving_tree.cast(origin, translation, half, limit, visit);
+    double limit = 1;
+    for (const Tree<D>& tree : trees) limit = tree.cast(origin, translation, half, limit, visit);
 }
 
 /// The shapes that are seen, whose fat box overlaps the box, and that pass the test; by index.
@@ -143,8 +109,7 @@ std::vector<ShapeId<D>> WorldState<D>::shapes_in(const Aabb<D>& box, const Query
     const auto visit = [&](std::uint32_t shape) {
         if (is_seen(shape, filter) && test(shape)) found.push_back(shape);
     };
-    fixed_tree.query(box, visit);
-    moving_tree.query(box, visit);
+    for (const Tree<D>& tree : trees) tree.query(box, visit);
     std::sort(found.begin(), found.end());
     std::vector<ShapeId<D>> result;
     for (const std::uint32_t shape : found) result.push_back(shape_slots.template id<ShapeId<D>>(shape));
@@ -371,14 +336,14 @@ std::optional<NearestPoint<D>> World<D>::nearest_point(const Vec<D>& point, doub
         return std::min(limit, distance * distance);
     };
     const double reach = std::min(max_distance, 1e150);
-    w.moving_tree.approach(point, w.fixed_tree.approach(point, reach * reach, visit), visit);
+    double limit = reach * reach;
+    for (const Tree<D>& tree : w.trees) limit = tree.approach(point, limit, visit);
     if (!is_finite(least)) return std::nullopt;
     return NearestPoint<D>{w.shape_slots.template id<ShapeId<D>>(best),
                            w.body_slots.template id<BodyId<D>>(w.shapes[best].body), nearest, least};
 }
 
 #define CAROM_INSTANTIATE(D)                                                                                \
-    template void WorldState<D>::keep_in_boxes(double);                                                     \
     template std::optional<WorldHit<D>> World<D>::cast_ray(const Ray<D>&, const QueryFilter<D>&) const;     \
     template std::vector<WorldHit<D>> World<D>::cast_ray_all(const Ray<D>&, const QueryFilter<D>&) const;   \
     template bool World<D>::cast_ray_any(const Ray<D>&, const QueryFilter<D>&) const;                       \

@@ -155,10 +155,10 @@ std::vector<ShapeId<D>> World<D>::inside(ShapeId<D> sensor) const {
     const std::uint32_t i = state_->index(sensor);
     if (!state_->shapes[i].definition.sensor) throw Error("sensor: the shape is not a sensor");
     std::vector<ShapeId<D>> result;
-    for (const SensorPair& pair : state_->sensor_pairs) {
-        if (pair.sensor == i && pair.inside)
-            result.push_back(state_->shape_slots.template id<ShapeId<D>>(pair.visitor));
-    }
+    state_->sensor_links.each(i, [&](std::uint32_t k, std::uint32_t) {
+        const SensorPair& pair = state_->sensor_pairs[k];
+        if (pair.inside) result.push_back(state_->shape_slots.template id<ShapeId<D>>(pair.visitor));
+    });
     std::ranges::sort(result, {}, &ShapeId<D>::index);
     return result;
 }

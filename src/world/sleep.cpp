@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "world/bonds.hpp"
 #include "world/state.hpp"
 
 namespace carom::detail {
@@ -21,44 +20,36 @@ void WorldState<D>::wake_all() {
 
 template <int D>
 void WorldState<D>::wake_neighbours(std::uint32_t body) {
-    for (const ContactRecord<D>& c : contacts) {
-        if (c.body_a == body) wake(c.body_b);
-        if (c.body_b == body) wake(c.body_a);
+    for (const bool on_fixed : {false, true}) {
+        each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
+            const ContactRecord<D>& c = contacts[contact];
+            wake(c.body_a == body ? c.body_b : c.body_a);
+        });
     }
-    each_bond([&](std::uint32_t a, std::uint32_t b) {
-        if (a == body) wake(b);
-        if (b == body) wake(a);
-    });
+    bonds.each(body, [&](std::uint32_t, std::uint32_t other) { wake(other); });
     wake(body);
 }
 
-/// Joins the dynamic bodies that touch, or that a joint or a spring ties together.
+/// Calls `visit(other)` for the bodies that can be moved and touch this one or are tied to it by a joint or a
+/// spring.
 template <int D>
-void WorldState<D>::join_islands() {
-    islands.reset(states.size());
-    const auto join = [&](std::uint32_t a, std::uint32_t b) {
-        if (types[a] == BodyType::dynamic && types[b] == BodyType::dynamic) islands.join(a, b);
-    };
-    for (const ContactRecord<D>& c : contacts) {
-        if (c.count > 0) join(c.body_a, c.body_b);
-    }
-    forces.each_spring(join);
-    each_bond(join);
+template <class Visit>
+void WorldState<D>::each_tied(std::uint32_t body, const Visit& visit) const {
+    each_contact_of(body, false, [&](std::uint32_t contact) {
+        const ContactRecord<D>& c = contacts[contact];
+        if (c.count > 0) visit(c.body_a == body ? c.body_b : c.body_a);
+    });
+    bonds.each(body, [&](std::uint32_t, std::uint32_t other) { visit(other); });
+    forces.each_tied(body, visit);
 }
 
 /// Wakes all that hangs together with a body of `to_wake`.
 template <int D>
 void WorldState<D>::wake_islands() {
-    if (to_wake.empty()) return;
-    join_islands();
-    std::vector<std::uint8_t> rouse(states.size(), 0);
-    for (const std::uint32_t i : to_wake) rouse[islands.root(i)] = 1;
+    for (std::size_t i = 0; i < to_wake.size(); ++i)  // grows on the way
+        each_tied(to_wake[i], [&](std::uint32_t other) { wake(other); });
+    roused.insert(roused.end(), to_wake.begin(), to_wake.end());
     to_wake.clear();
-    for (const std::uint32_t i : movable) {
-        if (types[i] != BodyType::dynamic || infos[i].awake || !rouse[islands.root(i)]) continue;
-        infos[i].awake = true;
-        infos[i].rest_time = 0;
-    }
 }
 
 /// A sleeper wakes when something that moves touches it, or is about to within this step.
@@ -83,9 +74,9 @@ void WorldState<D>::wake_touched(double dt) {
     wake_jointed();
     if (to_wake.empty()) return;
     wake_islands();
-    for (const std::uint32_t i : movable) {
-        if (types[i] == BodyType::dynamic && is_awake(i) && moving[i] == stands_still) list_awake(i);
-    }
+    std::ranges::sort(roused);
+    for (const std::uint32_t i : roused) list_awake(i);
+    roused.clear();
     follow_bodies();
 }
 
@@ -107,52 +98,65 @@ double way_since_rest(const BodyState<D>& s, const BodyInfo<D>& info, double rad
 
 }  // namespace
 
+/// Keeps the account of how long the body has been at rest; true when that is long enough to fall asleep.
+template <int D>
+bool WorldState<D>::note_rest(std::uint32_t body, double dt) {
+    const BodyState<D>& s = states[body];
+    BodyInfo<D>& info = infos[body];
+    if (types[body] != BodyType::dynamic || info.disabled) return false;
+    const double radius = masses[body].radius;
+    const double spin = std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity));
+    const bool slow = length(s.velocity) + spin * radius < sleep_speed;
+    if (!slow || !info.can_sleep || info.rest_time == 0 || way_since_rest(s, info, radius) > sleep_way) {
+        info.rest = {s.position, s.rotation};
+        info.rest_time = slow && info.can_sleep ? dt : 0;
+    } else {
+        info.rest_time += dt;
+    }
+    return info.rest_time >= time_to_sleep;
+}
+
 /// An island falls asleep when each of its bodies has been slow, and has stayed in its place, for a while.
 /// Both are asked, so that a slow creep down a slope is not taken for rest.
 template <int D>
 void WorldState<D>::fall_asleep(double dt) {
     if (!definition.sleep) return;
-    bool any = false;
-    for (const std::uint32_t i : awake) {
-        if (types[i] != BodyType::dynamic || infos[i].disabled) continue;
-        const BodyState<D>& s = states[i];
-        BodyInfo<D>& info = infos[i];
-        const double radius = masses[i].radius;
-        const double spin = std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity));
-        const bool slow = length(s.velocity) + spin * radius < sleep_speed;
-        if (!slow || !info.can_sleep || info.rest_time == 0 || way_since_rest(s, info, radius) > sleep_way) {
-            info.rest = {s.position, s.rotation};
-            info.rest_time = slow && info.can_sleep ? dt : 0;
-        } else {
-            info.rest_time += dt;
+    rest.clear();
+    for (const std::uint32_t i : awake) rest.push_back(note_rest(i, dt) ? Rest::possible : Rest::none);
+    for (std::size_t k = 0; k < awake.size(); ++k) {
+        if (rest[k] != Rest::possible) continue;
+        const bool rests = gather_resting(awake[k]);
+        for (const std::uint32_t i : island) {
+            if (!rests) {
+                rest[place[i]] = Rest::none;
+                continue;
+            }
+            infos[i].awake = false;
+            states[i].velocity = {};
+            states[i].angular_velocity = {};
         }
-        any |= info.rest_time >= time_to_sleep;
     }
-    if (!any) return;
+}
 
-    join_islands();
-    std::vector<std::uint8_t> restless(states.size(), 0);
-    for (const std::uint32_t i : awake) {
-        if (types[i] == BodyType::dynamic && infos[i].rest_time < time_to_sleep)
-            restless[islands.root(i)] = 1;
+/// Fills `island` with the bodies that hang together with this one; false as soon as one turns up that does
+/// not rest, as what lies on a moving platform does not. So a restless pile is not walked through in each
+/// step.
+template <int D>
+bool WorldState<D>::gather_resting(std::uint32_t body) {
+    island.assign(1, body);
+    rest[place[body]] = Rest::seen;
+    bool all = true;
+    for (std::size_t i = 0; all && i < island.size(); ++i) {
+        each_tied(island[i], [&](std::uint32_t other) {
+            if (moving[other] == stands_still) return;
+            Rest& its = rest[place[other]];
+            if (its == Rest::none) all = false;
+            if (its != Rest::possible) return;
+            its = Rest::seen;
+            island.push_back(other);
+        });
     }
-    for (const ContactRecord<D>& c : contacts) {  // what lies on a moving platform stays awake
-        if (c.count == 0) continue;
-        if (types[c.body_a] == BodyType::kinematic && is_moving(c.body_a))
-            restless[islands.root(c.body_b)] = 1;
-        if (types[c.body_b] == BodyType::kinematic && is_moving(c.body_b))
-            restless[islands.root(c.body_a)] = 1;
-    }
-    each_bond([&](std::uint32_t a, std::uint32_t b) {
-        if (types[a] == BodyType::kinematic && is_moving(a)) restless[islands.root(b)] = 1;
-        if (types[b] == BodyType::kinematic && is_moving(b)) restless[islands.root(a)] = 1;
-    });
-    for (const std::uint32_t i : awake) {
-        if (types[i] != BodyType::dynamic || infos[i].disabled || restless[islands.root(i)]) continue;
-        infos[i].awake = false;
-        states[i].velocity = {};
-        states[i].angular_velocity = {};
-    }
+    return all;
 }
 
 #define CAROM_INSTANTIATE(D)                                     \

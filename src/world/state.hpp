@@ -1,19 +1,22 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "carom/world.hpp"
+#include "collision/sweep.hpp"
 #include "collision/tree.hpp"
+#include "core/adjacency.hpp"
 #include "core/crew.hpp"
 #include "core/pair_set.hpp"
+#include "core/profiler.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
 #include "dynamics/contact_cache.hpp"
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
-#include "dynamics/islands.hpp"
 #include "dynamics/joint.hpp"
 #include "geometry/shape.hpp"
 #include "solver/joint_load.hpp"
@@ -28,8 +31,20 @@ struct ShapeRecord {
     ShapeDefinition<D> definition;
     std::uint32_t body = 0;
     Shape<D> core{};                    ///< of a convex shape: a ball half as large as fits into it
-    std::int32_t leaf = Tree<D>::none;  ///< in the tree of fixed or of moving things, by the body's type
-    bool in_fixed_tree = false;
+    std::int32_t leaf = Tree<D>::none;  ///< in the tree that its body says
+};
+
+/// The trees of shapes: what rests is kept apart, as nothing about it changes, and what moves is often
+/// looked at as a whole.
+enum TreeKind : std::uint8_t { of_fixed, of_resting, of_moving };
+
+/// Whom a shape meets: what is asked of it for every neighbour.
+struct Company {
+    std::uint64_t category = 0, mask = 0;
+    std::uint32_t body = 0;
+    std::int32_t group = 0;
+    bool senses = false;     ///< it is a sensor
+    bool is_ground = false;  ///< it is a terrain
 };
 
 /// How a body moves in a step.
@@ -37,6 +52,13 @@ enum : std::uint8_t {
     stands_still,   ///< fixed, at rest or asleep
     moved_by_user,  ///< kinematic, with a velocity
     moves_freely,   ///< dynamic and awake
+};
+
+/// What is known of a body while islands at rest are looked for.
+enum class Rest : std::uint8_t {
+    none,      ///< it stays awake
+    possible,  ///< it rests itself
+    seen,      ///< it belongs to the island that is being gathered, or to one that fell asleep
 };
 
 /// A contact of an awake dynamic body with a fixed shape.
@@ -51,13 +73,6 @@ struct SensorPair {
     std::uint32_t sensor = 0, visitor = 0;  ///< shapes
     bool inside = false;
     bool placed_anew = true;  ///< one of the two was moved by the user, or the pair is new
-};
-
-/// A shape and a terrain that touch, by some of its facets.
-template <int D>
-struct TerrainTouch {
-    ShapePair<D> pair;
-    std::uint32_t contact = 0;  ///< the first of them
 };
 
 /// What happened: filled by a step and by what is removed before it.
@@ -86,6 +101,7 @@ template <int D>
 struct WorldState {
     WorldDefinition<D> definition;
     std::shared_ptr<Scheduler> scheduler;  ///< or none: then all is done by the calling thread
+    std::optional<Profiler> profiler;      ///< if the user wants to know what steps take
     double time = 0;
     double last_step = 0;
     std::uint64_t step_count = 0;
@@ -103,9 +119,15 @@ struct WorldState {
     // Shapes, by index.
     Slots shape_slots;
     std::vector<ShapeRecord<D>> shapes;
-    Tree<D> fixed_tree, moving_tree;
-    std::vector<std::uint32_t> moved_shapes;
-    std::vector<std::uint8_t> has_new_box;  ///< by shape: its fat box changed since pairs were last found
+    std::vector<Company> company;              ///< by shape
+    std::array<Tree<D>, 3> trees;              ///< of shapes, by `TreeKind`
+    std::vector<TreeKind> tree_of;             ///< by body: where its shapes are
+    std::vector<OuterBox<D>> fat_boxes;        ///< by shape
+    std::vector<std::uint8_t> has_new_box;     ///< by shape: its fat box changed since pairs were last found
+    std::vector<std::uint32_t> moved_shapes;   ///< those that have one
+    std::vector<std::uint32_t> moving_shapes;  ///< those of the bodies that move in this step
+    std::vector<std::int32_t> new_leaves;      ///< leaves of moving shapes with new boxes
+    Sweep<D> crowd;
 
     Forces<D> forces;
 
@@ -113,15 +135,20 @@ struct WorldState {
     Slots joint_slots;
     std::vector<JointRecord<D>> joints;
     std::vector<JointDefinition<D>> joint_definitions;
-    std::vector<JointId<D>> joint_ids;  ///< all that are in use, oldest first
+    Adjacency bonds;                           ///< the joints by body
+    std::vector<JointId<D>> joint_ids;         ///< all that are in use, oldest first
     std::vector<CouplingRecord<D>> couplings;  ///< of the joints that couple others, oldest first
 
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
     std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
+    Adjacency contact_links;                       ///< contacts between `contact_list`s of shapes
     std::vector<std::uint32_t> loose;              ///< contacts that are looked at one by one, or `nowhere`
     std::vector<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
     std::vector<SensorPair> sensor_pairs;
+    Adjacency sensor_links;                  ///< sensor pairs between shapes
+    std::vector<std::uint32_t> placed_anew;  ///< shapes that have sensor pairs which are so
+    std::uint32_t bullets = 0;               ///< how many bodies are
 
     // Results of the last step.
     std::vector<MovedBody<D>> moved_bodies;
@@ -130,21 +157,20 @@ struct WorldState {
     std::vector<ContactEnd<D>>
         dropped_contacts;  ///< that touched when they were dropped, since events were last reported
     std::vector<SensorEnd<D>> dropped_visits;
-    std::vector<TerrainTouch<D>> terrain_touched,
-        terrain_before;  ///< now and a step ago, in the order of shapes
+    PairSet terrain_touched;                    ///< a shape and a terrain that touch by some of its facets
+    std::vector<ShapePair<D>> terrain_changes;  ///< such pairs of which a facet began or ended to touch
 
     // Working space of a step.
-    std::vector<std::uint32_t> awake;  ///< indices of the awake dynamic bodies and the moving kinematic ones
-    std::vector<std::uint8_t> moving;  ///< by body index: how it moves in this step
-    std::size_t facet_contacts = 0;    ///< how many contacts are with a facet of a terrain
-    bool some_locked = false;          ///< has any body ever had a locked axis?
-    std::uint32_t bullets = 0;         ///< how many bodies are bullets
-    std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
-    std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
-    std::vector<std::uint32_t> touch_changes;  ///< contacts that began or ended to touch
-    std::vector<std::uint32_t> fast;           ///< bodies that came so far in this step that they may pass
-                                               ///< through something
-    std::vector<std::uint32_t> flying;         ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> awake;   ///< the awake dynamic bodies and the moving kinematic ones, by index
+    std::vector<std::uint32_t> roused;  ///< bodies that may belong to `awake` by now
+    std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
+    bool some_locked = false;           ///< has any body ever had a locked axis?
+    std::vector<std::uint32_t> regrouped;         ///< bodies that got their second contact with a fixed shape
+    std::vector<std::uint32_t> to_place;          ///< contacts that the solver is to take up
+    std::vector<std::uint32_t> touch_changes;     ///< contacts that began or ended to touch
+    std::vector<std::uint32_t> fast;              ///< bodies that came so far in this step that they may pass
+                                                  ///< through something
+    std::vector<std::uint32_t> flying;            ///< indices of the dynamic bodies that nothing touches
     std::vector<std::uint32_t> active_joints;     ///< indices of the joints that the solver sees
     std::vector<std::uint32_t> active_couplings;  ///< the same in `couplings`
     std::vector<PairKey> new_pairs;
@@ -157,12 +183,16 @@ struct WorldState {
     std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
     std::vector<ManifoldPoint<D>> patch_points;
     std::vector<std::uint32_t> to_wake;
-    Islands islands;
+    std::vector<Rest> rest;             ///< by place in `awake`
+    std::vector<std::uint32_t> island;  ///< bodies that hang together
+    std::vector<std::uint32_t> picked;  ///< contacts or sensor pairs that are to be removed, or worked on
     Solver<D> solver;
 
     // step.cpp: the stages of a step, in the order of `step`.
     void step(double dt);
+    void count_work(StepProfile& profile) const;
     void begin_step(double dt);
+    void list_moving();
     void list_awake(std::uint32_t body);
     void sum_forces();
     void solve_constraints(double dt);
@@ -171,29 +201,33 @@ struct WorldState {
     void finish_bodies();
     void quarantine(std::uint32_t body);
 
-    // pairs.cpp: who is near whom.
+    // boxes.cpp: where the shapes are.
     void refresh_boxes(double dt);
-    void drop_pairs();
-    void find_pairs();
+    void keep_in_boxes(double dt);
+    TreeKind tree_for(std::uint32_t body) const;
+    void change_tree(std::uint32_t body, TreeKind kind);
     void insert_leaf(std::uint32_t shape);
     void remove_leaf(std::uint32_t shape);
+    void set_box(std::uint32_t shape, const Aabb<D>& box);
     void mark_moved(std::uint32_t shape);
+
+    // pairs.cpp: who is near whom.
+    void drop_pairs();
+    void find_pairs();
+    void take_up_pairs();
+    void meet(std::uint32_t shape_a, std::uint32_t shape_b);
     bool may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const;
-    bool is_terrain_contact(std::uint32_t shape_a, std::uint32_t shape_b) const;
     void find_facets(std::uint32_t shape_a, std::uint32_t shape_b);
-    bool are_near(const ContactRecord<D>& contact) const;
+    bool are_near(std::uint32_t contact, std::uint32_t shape_a, std::uint32_t shape_b) const;
     void set_surface(ContactRecord<D>& contact) const;
-    const Aabb<D>& fat_box(const ShapeRecord<D>& shape) const;
 
     // contacts.cpp: what is done about each contact, and where it is kept.
     void add_contact(const PairKey& key);
     void part_from_others();
     void remove_contact(std::size_t contact);
-    template <class Condition>
-    void remove_contacts_if(const Condition& condition) {
-        for (std::size_t i = 0; i < contacts.size();) condition(contacts[i]) ? remove_contact(i) : void(++i);
-    }
+    void remove_picked_contacts();
     void remove_contacts_of(std::uint32_t body);
+    void remove_contacts_between(std::uint32_t body, std::uint32_t other);
     void remove_contacts_of_shape(std::uint32_t shape);
     void forget_manifolds_of(std::uint32_t body);
     void loosen(std::uint32_t contact);
@@ -218,6 +252,7 @@ struct WorldState {
     void meet_ahead(ContactRecord<D>& contact, const ContactCache<D>& cache, double dt) const;
     void list_fast_contacts();
     void stop_at_obstacles();
+    void stop_bullets();
     void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);
 
     // patches.cpp: flush fixed shapes are one surface.
@@ -234,7 +269,7 @@ struct WorldState {
     void lay_on_fixed_face(Manifold<D>& manifold, const ContactRecord<D>& contact,
                            const Transform<D>& b_in_a) const;
     bool is_artefact_of_seam(const ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b,
-                             const ContactRecordPoint<D>& point) const;
+                             const Vec<D>& middle, double separation) const;
     Rotation<D> axes_of(std::uint32_t shape) const;
     void pass_one_way(ContactRecord<D>& contact, bool was_near) const;
     void drag_along(ContactRecord<D>& contact) const;
@@ -242,6 +277,7 @@ struct WorldState {
     // events.cpp: what began, ended and hit.
     void report_contacts();
     void report_terrain();
+    std::uint32_t first_touching_facet(const ShapePair<D>& pair) const;
     void report_begin(const ContactRecord<D>& contact);
     void sense();
     bool overlap(std::uint32_t shape_a, std::uint32_t shape_b) const;
@@ -254,14 +290,15 @@ struct WorldState {
     void wake_all();
     void wake_neighbours(std::uint32_t body);
     void fall_asleep(double dt);
-    void join_islands();
+    bool note_rest(std::uint32_t body, double dt);
+    bool gather_resting(std::uint32_t body);
+    template <class Visit>
+    void each_tied(std::uint32_t body, const Visit& visit) const;
 
     // joints.cpp: what binds bodies.
     void list_active_joints();
     void wake_jointed();
     void break_joints(double dt);
-    template <class Visit>
-    void each_bond(const Visit& visit) const;
     void remove_joint(std::uint32_t joint);
     void remove_joints_of(std::uint32_t body);
     std::uint32_t index(JointId<D> joint) const;
@@ -270,7 +307,6 @@ struct WorldState {
     Load<D> joint_load(std::uint32_t joint, double dt) const;
 
     // queries.cpp: questions between steps.
-    void keep_in_boxes(double dt);
     bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;
     Transform<D> placement_of(std::uint32_t shape) const { return frame_of(shapes[shape].body); }
     WorldHit<D> named(std::uint32_t shape, const CastHit<D>& hit) const;
@@ -299,9 +335,29 @@ struct WorldState {
     std::uint32_t index(BodyId<D> body) const;
     std::uint32_t index(ShapeId<D> shape) const;
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
+    /// A shape has its contacts in two lists: those of which one body is fixed, and the others.
+    static std::uint32_t contact_list(std::uint32_t shape, bool on_fixed) { return 2 * shape + on_fixed; }
+    static std::uint32_t shape_of_list(std::uint32_t list) { return list / 2; }
+    /// Calls `visit(contact)` for each contact of the shape, or of the body that is or is not with a fixed
+    /// one.
+    template <class Visit>
+    void each_contact_of_shape(std::uint32_t shape, const Visit& visit) const {
+        for (const bool on_fixed : {false, true}) {
+            contact_links.each(contact_list(shape, on_fixed),
+                               [&](std::uint32_t contact, std::uint32_t) { visit(contact); });
+        }
+    }
+    template <class Visit>
+    void each_contact_of(std::uint32_t body, bool on_fixed, const Visit& visit) const {
+        for (const ShapeId<D>& id : infos[body].shapes) {
+            contact_links.each(contact_list(id.index, on_fixed),
+                               [&](std::uint32_t contact, std::uint32_t) { visit(contact); });
+        }
+    }
+    void remove_visit(std::size_t sensor_pair);
+    void remove_picked_visits();
     void remove_visits_of(std::uint32_t shape);
     void place_visits_anew(std::uint32_t shape);
-    void remove_visit(std::size_t sensor_pair);
 };
 
 /// Velocity of a body below which, and way within `time_to_sleep` less than which, it counts as at rest.

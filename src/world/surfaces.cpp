@@ -38,7 +38,7 @@ std::optional<FacePlane<D>> facing_plane(const Facet<D>& facet, const Vec<D>& di
 }
 
 template <int D>
-bool near_box(const Aabb<D>& box, const Vec<D>& point, double reach) {
+bool near_box(const OuterBox<D>& box, const Vec<D>& point, double reach) {
     for (int i = 0; i < D; ++i) {
         if (point[i] < box.lower[i] - reach || point[i] > box.upper[i] + reach) return false;
     }
@@ -79,11 +79,15 @@ void WorldState<D>::lay_on_fixed_face(Manifold<D>& m, const ContactRecord<D>& c,
 /// δ. It may do so and yet leave room for the body, as a wall does beside a box on the floor; then the
 /// surface goes on from p to below the body, and lies open somewhere on this way.
 ///
+/// The point is given as it was found, from a's centre and midway between the shapes: were it rounded to
+/// `float`, two shapes on whose common edge a body lies would each reach out beyond the other's plane.
+///
 /// Nothing is lost: as long as the shapes are apart, the fixed point nearest to the body is never false, for
 /// whatever reaches out there would be nearer still.
 template <int D>
 bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodyState<D>& a,
-                                        const BodyState<D>& b, const ContactRecordPoint<D>& point) const {
+                                        const BodyState<D>& b, const Vec<D>& middle,
+                                        double separation) const {
     const bool a_fixed = types[c.body_a] == BodyType::fixed;
     const std::uint32_t body = a_fixed ? c.body_b : c.body_a;
     const std::uint32_t own_shape = a_fixed ? c.shape_a : c.shape_b;
@@ -94,9 +98,9 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
     if (last - first < 2) return false;
 
     const BodyState<D>& mover = a_fixed ? b : a;
-    const Vec<D> arm = narrow<double>(a_fixed ? point.arm_b : point.arm_a);
+    const Vec<D> arm = a.position - mover.position + middle;
     const Vec<D> n = (a_fixed ? 1.0 : -1.0) * narrow<double>(c.normal);
-    const Vec<D> p = mover.position + arm - (0.5 * point.separation) * n;  // on the fixed surface
+    const Vec<D> p = mover.position + arm - 0.5 * separation * n;  // on the fixed surface
     const double probe = std::clamp(0.02 * masses[body].radius, 10 * flush, 0.02);
     const auto distance = [&](const FixedContact& other, const Vec<D>& from) {
         const ShapeRecord<D>& s = shapes[other.other];
@@ -104,14 +108,14 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
     };
     const auto covers = [&](const Vec<D>& at) {
         return std::any_of(first, last, [&](const FixedContact& other) {
-            return !is_own(other) && near_box(fat_box(shapes[other.other]), at, flush) &&
+            return !is_own(other) && near_box(fat_boxes[other.other], at, flush) &&
                    distance(other, at) <= flush;
         });
     };
     const auto reaches_out = [&](const FixedContact& other) {
         constexpr double rounding = 1e-7;
-        return !is_own(other) && near_box(fat_box(shapes[other.other]), p, flush) &&
-               distance(other, p) <= flush && distance(other, p + probe * n) < (1 - rounding) * probe;
+        return !is_own(other) && near_box(fat_boxes[other.other], p, flush) && distance(other, p) <= flush &&
+               distance(other, p + probe * n) < (1 - rounding) * probe;
     };
     if (std::none_of(first, last, reaches_out)) return false;
 
@@ -162,8 +166,7 @@ void WorldState<D>::drag_along(ContactRecord<D>& c) const {
     template void WorldState<D>::lay_on_fixed_face(Manifold<D>&, const ContactRecord<D>&,               \
                                                    const Transform<D>&) const;                          \
     template bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>&, const BodyState<D>&,      \
-                                                     const BodyState<D>&, const ContactRecordPoint<D>&) \
-        const;                                                                                          \
+                                                     const BodyState<D>&, const Vec<D>&, double) const; \
     template Rotation<D> WorldState<D>::axes_of(std::uint32_t) const;                                   \
     template void WorldState<D>::pass_one_way(ContactRecord<D>&, bool) const;                           \
     template void WorldState<D>::drag_along(ContactRecord<D>&) const;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -21,20 +23,40 @@ Aabb<D> random_box(Random& random, double world, double largest) {
 }
 
 template <int D>
-using Boxes = std::map<std::uint32_t, Aabb<D>>;  // by payload
+using Boxes = std::map<std::uint32_t, OuterBox<D>>;  // by payload
 
 template <int D>
 void expect_same_answers(const Tree<D>& tree, const Boxes<D>& boxes, Random& random) {
     ASSERT_TRUE(tree.validate());
     ASSERT_EQ(tree.size(), std::int32_t(boxes.size()));
     for (int k = 0; k < 10; ++k) {
-        const Aabb<D> window = random_box<D>(random, 10, 4);
+        const OuterBox<D> window = random_box<D>(random, 10, 4);
         std::multiset<std::uint32_t> expected, found;
         for (const auto& [payload, box] : boxes)
             if (overlaps(box, window)) expected.insert(payload);
         tree.query(window, [&](std::uint32_t payload) { found.insert(payload); });
         ASSERT_EQ(found, expected);
     }
+}
+
+TEST(OuterBox, holds_the_box_and_is_hardly_larger) {
+    Random random(21);
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < 10000; ++i) {
+        const double x = random.between(-1, 1) * std::pow(10.0, random.between(-60, 60));
+        const float below = rounded_down(x), above = rounded_up(x);
+        ASSERT_LE(below, x);
+        ASSERT_GE(above, x);
+        ASSERT_GE(std::nextafter(below, infinite), above);
+    }
+    for (const double x : {0.0, 1.0, -2.5, 1e30f * 1.0}) {
+        EXPECT_EQ(rounded_down(x), x);
+        EXPECT_EQ(rounded_up(x), x);
+    }
+    EXPECT_EQ(rounded_up(1e300), infinite);
+    EXPECT_EQ(rounded_down(-1e300), -infinite);
+    EXPECT_EQ(rounded_down(1e300), std::numeric_limits<float>::max());
+    EXPECT_EQ(rounded_up(1e-300), std::numeric_limits<float>::denorm_min());
 }
 
 template <class T>
@@ -53,7 +75,7 @@ TYPED_TEST(TreeTest, answers_like_brute_force_through_random_changes) {
         for (int step = 0; step < 600; ++step) {
             const int choice = random.below(step < 300 ? 10 : 20);
             if (boxes.empty() || choice < 6) {
-                const Aabb<D> box = random_box<D>(random, 10, 1);
+                const OuterBox<D> box = random_box<D>(random, 10, 1);
                 leaves[next] = tree.insert(box, next);
                 boxes[next++] = box;
             } else {
@@ -62,9 +84,10 @@ TYPED_TEST(TreeTest, answers_like_brute_force_through_random_changes) {
                 if (choice < 9) {
                     const double stride = choice == 8 ? 10 : 0.1;
                     const Vec<D> shift = random.in_cube<D>(stride);
-                    it->second = {it->second.lower + shift, it->second.upper + shift};
+                    const Aabb<D> box = widened(it->second);
+                    it->second = Aabb<D>{box.lower + shift, box.upper + shift};
                     tree.move(leaf, it->second);
-                    ASSERT_EQ(tree.box(leaf).lower, it->second.lower);
+                    ASSERT_EQ(tree.box(leaf), it->second);
                     ASSERT_EQ(tree.payload(leaf), it->first);
                 } else {
                     tree.remove(leaf);
@@ -127,8 +150,39 @@ TYPED_TEST(TreeTest, building_numbers_the_leaves_like_the_entries) {
     ASSERT_TRUE(tree.validate());
     for (std::uint32_t i = 0; i < 100; ++i) {
         EXPECT_EQ(tree.payload(std::int32_t(i)), 5 * i);
-        EXPECT_EQ(tree.box(std::int32_t(i)).lower, entries[i].box.lower);
+        EXPECT_EQ(tree.box(std::int32_t(i)), entries[i].box);
     }
+}
+
+TYPED_TEST(TreeTest, moves_many_at_once_and_stays_good) {
+    constexpr int D = TypeParam::value;
+    Random random(8);
+    Tree<D> tree;
+    Boxes<D> boxes;
+    std::vector<std::int32_t> leaves;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+        boxes[i] = random_box<D>(random, 10, 0.5);
+        leaves.push_back(tree.insert(boxes[i], i));
+    }
+    for (int round = 0; round < 200; ++round) {
+        std::vector<std::int32_t> moved;
+        for (std::uint32_t i = 0; i < 400; ++i) {
+            if (random.below(3) == 0) continue;
+            const Vec<D> shift = random.in_cube<D>(random.below(20) == 0 ? 3 : 0.2);
+            const Aabb<D> box = widened(boxes[i]);
+            boxes[i] = Aabb<D>{box.lower + shift, box.upper + shift};
+            moved.push_back(leaves[i]);
+        }
+        tree.move_all(moved, [&](std::uint32_t payload) -> const OuterBox<D>& { return boxes[payload]; });
+        if (round % 20 == 0) expect_same_answers(tree, boxes, random);
+    }
+    expect_same_answers(tree, boxes, random);
+    const double moved = tree.cost();
+    tree.rebuild();
+    EXPECT_LE(moved, 1.3 * tree.cost());
+    tree.clear();
+    tree.move_all({}, [&](std::uint32_t payload) -> const OuterBox<D>& { return boxes[payload]; });
+    EXPECT_TRUE(tree.validate());
 }
 
 TYPED_TEST(TreeTest, holds_infinite_and_equal_boxes) {

@@ -44,7 +44,7 @@ struct Flyer {
         for (int i = 0; i < steps; ++i) {
             std::vector<Load<D>> loads(1);
             std::vector<std::uint8_t> varies(1, 0);
-            forces.mark_fields(time, varies);
+            forces.mark_fields(time, bodies, varies);
             const LoadModel<D> model{gravity, applied, bodies, forces};
             model.sum({states, masses}, time, loads);
             detail::fly<D>({bodies, states, masses, loads, varies, model, time, step}, integrator);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <numeric>
+
 #include "carom/error.hpp"
 #include "collision/random.hpp"
 
@@ -38,7 +41,9 @@ struct Bodies {
     BodyView<D> view() const { return {states, masses}; }
     std::vector<Load<D>> loads_of(const Forces<D>& forces, double time) {
         loads.assign(states.size(), {});
-        forces.add_loads(view(), time, loads);
+        std::vector<std::uint32_t> all(states.size());
+        std::iota(all.begin(), all.end(), 0u);
+        forces.add_loads(view(), all, time, loads);
         return loads;
     }
     static BodyId<D> id(std::uint32_t index) { return {index, 1}; }
@@ -246,7 +251,7 @@ TYPED_TEST(ForcesIn, MarkTheBodiesWhoseLoadVaries) {
         Forces<D> forces;
         forces.add(definition);
         std::vector<std::uint8_t> varies(3, 0);
-        forces.mark_fields(0, varies);
+        forces.mark_fields(0, std::array{0u, 1u, 2u}, varies);
         return varies;
     };
     using Marks = std::vector<std::uint8_t>;

@@ -261,9 +261,9 @@ TEST(CommandLine, check) {
 TEST(CommandLine, bench) {
     const TestFolder folder;
     const auto names = lines_of(carom(folder, "bench --list").out);
-    for (const std::string name :
-         {"large_pyramid_2", "many_pyramids_2", "smash_2", "large_pyramid_3", "many_pyramids_3",
-          "convex_pile_3", "convex_vs_mesh_3", "large_world_3", "wide_pyramid_3", "pyramid_3"})
+    for (const std::string name : {"large_pyramid_2", "many_pyramids_2", "smash_2", "sleeping_city_2",
+                                   "sleeping_city_3", "large_pyramid_3", "many_pyramids_3", "convex_pile_3",
+                                   "convex_vs_mesh_3", "large_world_3", "wide_pyramid_3", "pyramid_3"})
         EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 
     const Outcome run = carom(folder, "bench wide_pyramid_3 --threads 1,2 --steps 3 --repeat 2 --json");

@@ -97,6 +97,20 @@ TYPED_TEST(Surfaces, tiles_are_felt_no_more_than_a_single_floor) {
     }
 }
 
+TYPED_TEST(Surfaces, what_lies_right_above_a_seam_rests) {
+    constexpr int D = TypeParam::value;
+    World<D> world;
+    add_floor<D>(world, {{-3, -2, -1, 0, 1, 2, 3}}, {});
+    std::vector<BodyId<D>> balls;
+    for (int i = -2; i <= 2; ++i)
+        balls.push_back(world.add_body(body_of<D>(Ball{0.5 / (3 + i)}, vec<D>(i, 1.1 + 0.07 * i))));
+    run(world, 240);
+    for (const BodyId<D>& ball : balls) {
+        EXPECT_FALSE(world.awake(ball)) << world.position(ball).x;
+        EXPECT_LT(length(world.velocity(ball)), 1e-12);
+    }
+}
+
 TYPED_TEST(Surfaces, a_wall_on_the_floor_stops_what_a_seam_does_not) {
     constexpr int D = TypeParam::value;
     for (int kind = 0; kind < 4; ++kind) {
