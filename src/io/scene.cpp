@@ -53,8 +53,8 @@ Scene read_scene(const Value& document) {
     auto& data = scene.data.emplace<SceneData<D>>();
     Materials materials;
     const auto ignore = [](const Value&) {};
-    // Materials come before the bodies that are made of them, and bodies before the joints and forces that name
-    // them.
+    // Materials come before the bodies that are made of them, and bodies before the joints and forces that
+    // name them.
     read_object(document, {field("carom", ignore), field("dimension", ignore), field("name", scene.name),
                            field("world", [&](const Value& v) { read_world(v, data.world, scene.step); }),
                            field("materials", [&](const Value& v) { read_materials(v, materials); }),

@@ -11,8 +11,8 @@
 namespace carom::io {
 
 /// The world of a scene, as definitions that can be given to a `World<D>` as they are, except that a joint
-/// or force names its bodies by their index in `bodies`, and a joint other joints by their index in `joints`, there
-/// being no handles yet.
+/// or force names its bodies by their index in `bodies`, and a joint other joints by their index in `joints`,
+/// there being no handles yet.
 template <int D>
 struct SceneData {
     WorldDefinition<D> world{};

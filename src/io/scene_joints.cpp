@@ -36,16 +36,16 @@ void read_limits(const Value& value, std::optional<JointLimits>& limits) {
 
 void read_spring(const Value& value, std::optional<JointSpring>& target) {
     JointSpring& spring = target.emplace();
-    read_object(value, {positive("frequency", spring.frequency), not_negative("damping_ratio", spring.damping_ratio),
-                        field("rest", spring.rest)});
+    read_object(value, {positive("frequency", spring.frequency),
+                        not_negative("damping_ratio", spring.damping_ratio), field("rest", spring.rest)});
 }
 
 /// A motor goes at a speed or to a target; the one makes no sense beside the other.
 void read_motor(const Value& value, std::optional<JointMotor>& target) {
     JointMotor& motor = target.emplace();
     read_object(value, {field("speed", motor.speed), field("target", motor.target),
-                        positive("frequency", motor.frequency), not_negative("damping_ratio", motor.damping_ratio),
-                        not_negative("max", motor.max)});
+                        positive("frequency", motor.frequency),
+                        not_negative("damping_ratio", motor.damping_ratio), not_negative("max", motor.max)});
     const bool has_speed = value.json().contains("speed"), has_target = value.json().contains("target");
     if (has_speed == has_target) value.fail("has to have either \"speed\" or \"target\"");
 }
@@ -86,8 +86,9 @@ Fields hinge_fields(const Names&, Kind<D>& kind) {
 template <int D>
 Fields slider_fields(const Names&, Kind<D>& kind) {
     auto& joint = kind.template emplace<SliderJoint<D>>();
-    return {required("anchor", joint.anchor), direction("axis", joint.axis), limits_field("limits", joint.limits),
-            motor_field("motor", joint.motor), spring_field("spring", joint.spring)};
+    return {required("anchor", joint.anchor), direction("axis", joint.axis),
+            limits_field("limits", joint.limits), motor_field("motor", joint.motor),
+            spring_field("spring", joint.spring)};
 }
 
 template <int D>
@@ -95,7 +96,8 @@ Fields ball_fields(const Names&, Kind<D>& kind) {
     auto& joint = kind.template emplace<BallJoint<D>>();
     return Fields{required("anchor", joint.anchor), spring_field("spring", joint.spring),
                   not_negative("friction", joint.friction)} +
-           in_space<D>({direction("axis", joint.axis), field("cone_axis", joint.cone_axis), field("swing_limit", joint.swing_limit),
+           in_space<D>({direction("axis", joint.axis), field("cone_axis", joint.cone_axis),
+                        field("swing_limit", joint.swing_limit),
                         limits_field("twist_limits", joint.twist_limits)});
 }
 
@@ -112,9 +114,9 @@ Fields distance_fields(const Names&, Kind<D>& kind) {
     const auto length = [&joint](const Value& value) {
         not_negative("length", joint.length.emplace()).read(value);
     };
-    return {field("anchor_a", joint.anchor_a),        field("anchor_b", joint.anchor_b),
-            field("length", length),                  limits_field("limits", joint.limits),
-            motor_field("motor", joint.motor),        spring_field("spring", joint.spring)};
+    return {field("anchor_a", joint.anchor_a), field("anchor_b", joint.anchor_b),
+            field("length", length),           limits_field("limits", joint.limits),
+            motor_field("motor", joint.motor), spring_field("spring", joint.spring)};
 }
 
 template <int D>
@@ -131,38 +133,40 @@ template <int D>
 Fields pulley_fields(const Names&, Kind<D>& kind) {
     auto& joint = kind.template emplace<PulleyJoint<D>>();
     return {field("anchor_a", joint.anchor_a), field("anchor_b", joint.anchor_b),
-            required("ground_a", joint.ground_a), required("ground_b", joint.ground_b), positive("ratio", joint.ratio)};
+            required("ground_a", joint.ground_a), required("ground_b", joint.ground_b),
+            positive("ratio", joint.ratio)};
 }
 
 template <class Joint, int D>
 Fields coupled_fields(const Names& names, Kind<D>& kind) {
     auto& joint = kind.template emplace<Joint>();
     const auto name = [&names](JointId<D>& target) {
-        return [&names, &target](const Value& value) { target = {names.joints.find(value, "an earlier joint"), 0}; };
+        return [&names, &target](const Value& value) {
+            target = {names.joints.find(value, "an earlier joint"), 0};
+        };
     };
     const auto ratio = [&joint](const Value& value) {
         read(value, joint.ratio);
         if (joint.ratio == 0) value.refuse("is zero");
     };
-    return {required("joint_a", name(joint.joint_a)), required("joint_b", name(joint.joint_b)), field("ratio", ratio)};
+    return {required("joint_a", name(joint.joint_a)), required("joint_b", name(joint.joint_b)),
+            field("ratio", ratio)};
 }
 
 template <int D>
 Fields pose_fields(const Names&, Kind<D>& kind) {
     auto& joint = kind.template emplace<MotorJoint<D>>();
-    return {field("position", joint.position),
-            field(D == 2 ? "angle" : "rotation", joint.rotation),
-            positive("frequency", joint.frequency),
-            not_negative("damping_ratio", joint.damping_ratio),
-            not_negative("max_force", joint.max_force),
-            not_negative("max_torque", joint.max_torque)};
+    return {field("position", joint.position),          field(D == 2 ? "angle" : "rotation", joint.rotation),
+            positive("frequency", joint.frequency),     not_negative("damping_ratio", joint.damping_ratio),
+            not_negative("max_force", joint.max_force), not_negative("max_torque", joint.max_torque)};
 }
 
 template <int D>
 Fields target_fields(const Names&, Kind<D>& kind) {
     auto& joint = kind.template emplace<TargetJoint<D>>();
-    return {required("anchor", joint.anchor), field("target", joint.target), positive("frequency", joint.frequency),
-            not_negative("damping_ratio", joint.damping_ratio), not_negative("max", joint.max)};
+    return {required("anchor", joint.anchor), field("target", joint.target),
+            positive("frequency", joint.frequency), not_negative("damping_ratio", joint.damping_ratio),
+            not_negative("max", joint.max)};
 }
 
 template <int D>
@@ -215,8 +219,12 @@ void read_joint(const Value& value, const Names& names, JointDefinition<D>& join
     Fields common{field("type", [](const Value&) {}), field("collide", joint.collide),
                   positive("break_force", joint.break_force), positive("break_torque", joint.break_torque)};
     if (type.has_bodies) {
-        common.push_back(field("a", [&](const Value& v) { joint.a = BodyId<D>{names.bodies.find(v, "a body"), 0}; }));
-        common.push_back(required("b", [&](const Value& v) { joint.b = {names.bodies.find(v, "a body"), 0}; }));
+        common.push_back(field("a", [&](const Value& v) {
+            joint.a = BodyId<D>{names.bodies.find(v, "a body"), 0};
+        }));
+        common.push_back(required("b", [&](const Value& v) {
+            joint.b = {names.bodies.find(v, "a body"), 0};
+        }));
     }
     // A joint is known by its name only after it has been read: it cannot name itself.
     read_object(value, common + type.fields(names, joint.kind) + Fields{field("name", name)});

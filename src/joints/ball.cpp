@@ -32,7 +32,8 @@ void configure(const BallJoint<D>& joint, JointRecord<D>& record) {
         check(*joint.spring, "spring");
         record.held.angular = spring_settings(*joint.spring, 0);
     }
-    const bool turns_freely = !joint.spring && joint.friction == 0 && !joint.swing_limit && !joint.twist_limits;
+    const bool turns_freely =
+        !joint.spring && joint.friction == 0 && !joint.swing_limit && !joint.twist_limits;
     if (turns_freely) {
         set_layout<D, layout(LinearPart::point, AngularPart::none)>(record);
     } else if constexpr (D == 2) {

@@ -16,7 +16,7 @@ namespace carom::detail {
 /// Where the bodies of a joint are when it is added. The world stands at the origin.
 template <int D>
 struct JointSite {
-    Transform<D> a{}, b{};         ///< frames of the bodies
+    Transform<D> a{}, b{};          ///< frames of the bodies
     Vec<D> center_a{}, center_b{};  ///< centres of mass in the world
     double angle = 0;               ///< 2D: of b against a, whole turns included
 };
@@ -73,7 +73,8 @@ Rotation3 frame_along(const Vec3& axis, const Vec3& second);
 template <int D>
 void require_direction(const Vec<D>& axis, std::string_view field) {
     require_finite(axis, field);
-    if (!(length_squared(axis) > 1e-100)) throw Error(std::string(field) + ": the zero vector has no direction");
+    if (!(length_squared(axis) > 1e-100))
+        throw Error(std::string(field) + ": the zero vector has no direction");
 }
 
 inline void check(const JointSpring& spring, std::string_view field) {
@@ -104,11 +105,13 @@ inline SpringSettings spring_settings(double frequency, double damping_ratio, do
     return s;
 }
 
-inline void set_limits(DriveSettings& drive, const std::optional<JointLimits>& limits, std::string_view field) {
+inline void set_limits(DriveSettings& drive, const std::optional<JointLimits>& limits,
+                       std::string_view field) {
     drive.low = -std::numeric_limits<double>::infinity();
     drive.high = std::numeric_limits<double>::infinity();
     if (!limits) return;
-    if (std::isnan(limits->low) || std::isnan(limits->high)) throw Error(std::string(field) + ": not a number");
+    if (std::isnan(limits->low) || std::isnan(limits->high))
+        throw Error(std::string(field) + ": not a number");
     if (limits->low > limits->high)
         refuse(field, limits->low, "as the lower limit is above the upper one, " + to_text(limits->high));
     drive.low = limits->low;
@@ -137,7 +140,8 @@ inline void set_motor_and_spring(DriveSettings& drive, const std::optional<Joint
     require_finite(*motor->target, prefix + "target");
     require_positive(motor->frequency, prefix + "frequency");
     require_not_negative(motor->damping_ratio, prefix + "damping_ratio");
-    if (spring) throw Error(std::string(field) + ": with a target it is a spring, beside which there is no other");
+    if (spring)
+        throw Error(std::string(field) + ": with a target it is a spring, beside which there is no other");
     drive.spring = spring_settings(motor->frequency, motor->damping_ratio, motor->max);
     drive.spring.rest = *motor->target;
 }

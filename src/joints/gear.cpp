@@ -49,8 +49,8 @@ CouplingRecord<D> couple(const RackJoint<D>& joint, const CoupledJoint<D>& a, co
     return record;
 }
 
-#define CAROM_INSTANTIATE(D)                                                                                  \
-    template CouplingRecord<D> couple(const GearJoint<D>&, const CoupledJoint<D>&, const CoupledJoint<D>&);   \
+#define CAROM_INSTANTIATE(D)                                                                                \
+    template CouplingRecord<D> couple(const GearJoint<D>&, const CoupledJoint<D>&, const CoupledJoint<D>&); \
     template CouplingRecord<D> couple(const RackJoint<D>&, const CoupledJoint<D>&, const CoupledJoint<D>&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

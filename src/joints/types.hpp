@@ -26,8 +26,8 @@ CAROM_JOINT_TYPE(ParallelJoint)
 }  // namespace carom::detail
 
 /// At the foot of the file of a type.
-#define CAROM_INSTANTIATE_JOINT(Type)                                        \
-    template JointRecord<2> place(const Type<2>&, const JointSite<2>&);      \
-    template JointRecord<3> place(const Type<3>&, const JointSite<3>&);      \
-    template void configure(const Type<2>&, JointRecord<2>&);                \
+#define CAROM_INSTANTIATE_JOINT(Type)                                   \
+    template JointRecord<2> place(const Type<2>&, const JointSite<2>&); \
+    template JointRecord<3> place(const Type<3>&, const JointSite<3>&); \
+    template void configure(const Type<2>&, JointRecord<2>&);           \
     template void configure(const Type<3>&, JointRecord<3>&);

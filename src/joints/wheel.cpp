@@ -14,7 +14,8 @@ JointRecord<D> place(const WheelJoint<D>& joint, const JointSite<D>& site) {
         return builder.frame(frame_along(joint.axis)).drive(Measure::twist).record;
     } else {
         require_direction(joint.spin_axis, "spin_axis");
-        require_direction(cross(normalized(joint.axis), normalized(joint.spin_axis)), "spin_axis (across axis)");
+        require_direction(cross(normalized(joint.axis), normalized(joint.spin_axis)),
+                          "spin_axis (across axis)");
         return builder.frame(frame_along(joint.axis, joint.spin_axis))
             .drive(Measure::spin)
             .drive(Measure::steer)

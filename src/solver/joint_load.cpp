@@ -247,7 +247,7 @@ struct Load {
     static void load(JointRecord<D>& joint, const JointPose<D>& pose, std::span<const BodyState<D>> states,
                      std::span<const BodyMass<D>> masses, double h, float* to, std::size_t stride) {
         Rows rows;
-        std::memcpy(&rows.kept, joint.kept.data(), kept * sizeof(float));
+        std::memcpy(static_cast<void*>(&rows.kept), joint.kept.data(), kept * sizeof(float));
         rows.wrench = joint.wrench;
         rows.before = joint.before;
         if constexpr (has_anchors(L))

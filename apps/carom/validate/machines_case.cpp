@@ -20,8 +20,8 @@ BodyId<D> add_body(World<D>& world, double mass, const Vec<D>& position, const G
 }
 
 template <int D>
-JointId<D> add_joint(World<D>& world, const decltype(JointDefinition<D>::kind)& kind, std::optional<BodyId<D>> a,
-                     BodyId<D> b) {
+JointId<D> add_joint(World<D>& world, const decltype(JointDefinition<D>::kind)& kind,
+                     std::optional<BodyId<D>> a, BodyId<D> b) {
     JointDefinition<D> joint;
     joint.kind = kind;
     joint.a = a;
@@ -67,8 +67,10 @@ void add_gear(std::vector<Result>& results, double ratio) {
     const std::string what = fmt::format("{}D, gear of {:g}: ", D, ratio);
     const double speed = world.coordinate_speed(a);
     results.push_back(relative(what + "acceleration (rad/s²)",
-                               1 / (inertia_of(world, one) + ratio * ratio * inertia_of(world, two)), speed, bounds));
-    results.push_back(relative(what + "speed of the other wheel / speed", -ratio, world.coordinate_speed(b) / speed, bounds));
+                               1 / (inertia_of(world, one) + ratio * ratio * inertia_of(world, two)), speed,
+                               bounds));
+    results.push_back(relative(what + "speed of the other wheel / speed", -ratio,
+                               world.coordinate_speed(b) / speed, bounds));
 }
 
 template <int D>
@@ -83,8 +85,9 @@ void add_spring(std::vector<Result>& results) {
         const JointSpring spring{.frequency = 10 / (2 * pi), .damping_ratio = damping_ratio, .rest = -1};
         add_joint<D>(world, SliderJoint<D>{.anchor = in_plane<D>(1, 0), .spring = spring}, {}, mass);
         run_until(world, 1);
-        results.push_back(absolute(fmt::format("{}D, spring, damping ratio {:g}: place at 1 s (m)", D, damping_ratio),
-                                   reference, world.position(mass).x, bounds));
+        results.push_back(
+            absolute(fmt::format("{}D, spring, damping ratio {:g}: place at 1 s (m)", D, damping_ratio),
+                     reference, world.position(mass).x, bounds));
     }
 }
 
@@ -114,7 +117,8 @@ void add_falling_rod(std::vector<Result>& results) {
     const double now = world.coordinate(hinge), speed = world.coordinate_speed(hinge);
     // The square of the speed grows evenly enough within a step.
     const double share = (tilt - pi / 2 - before) / (now - before);
-    const double squared = speed_before * speed_before + share * (speed * speed - speed_before * speed_before);
+    const double squared =
+        speed_before * speed_before + share * (speed * speed - speed_before * speed_before);
     results.push_back(relative(fmt::format("{}D, hinged rod: speed of its end at the ground (m/s)", D),
                                std::sqrt(3 * g), std::sqrt(squared), bounds));
 }
