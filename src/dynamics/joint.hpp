@@ -160,7 +160,9 @@ struct JointRecord {
     Rotation<D> frame_a{}, frame_b{};     ///< the joint's frame in those of the bodies
     std::vector<DriveSettings> drives;
     HeldSettings held;
-    Wrench<D, float> wrench{};       ///< impulse of the last sub-step, N·s: force, and torques about the centres
+    Wrench<D, float> wrench{};  ///< impulse of the last sub-step, N·s: force, and torques about the centres
+    Wrench<D, float> before{};  ///< the same of the sub-step before that
+    Wrench<D, float> total{};   ///< impulse of the whole last step
     std::array<float, most_kept> kept{};  ///< impulses of the rows in the last sub-step
 };
 
@@ -173,7 +175,7 @@ struct CouplingRecord {
     std::array<double, 2> factors{};
     double sum = 0;
     bool is_rope = false;
-    float kept = 0;                          ///< impulse of the last sub-step
+    float kept = 0, before = 0;              ///< impulse of the last sub-step, and of the one before
 };
 
 }  // namespace carom::detail

@@ -42,7 +42,7 @@ class Couplings {
         std::array<End, 2> ends;
         float error = 0;  ///< at the start of the step
         bool is_rope = false;
-        float impulse = 0;
+        float impulse = 0, before = 0, total = 0;  ///< of this sub-step, of the one before, of the step
         std::array<Effect, 4> effects{};
         Wrench<D, float> on_last{};  ///< of a unit of impulse, of the second end
     };

@@ -248,6 +248,7 @@ struct Load {
         Rows rows;
         std::memcpy(&rows.kept, joint.kept.data(), kept * sizeof(float));
         rows.wrench = joint.wrench;
+        rows.before = joint.before;
         if constexpr (has_anchors(L))
             rows.anchors = {narrow<float>(pose.arm_a), narrow<float>(pose.arm_b), narrow<float>(pose.gap)};
         set_linear(rows, joint, pose, h);
@@ -263,12 +264,14 @@ struct Load {
 
     static void store(JointRecord<D>& joint, const float* from, std::size_t stride) {
         std::array<float, fields> all{};
-        constexpr std::size_t wanted = kept + sizeof(Wrench<D, float>) / sizeof(float);
+        constexpr std::size_t wanted = kept + 3 * sizeof(Wrench<D, float>) / sizeof(float);
         for (std::size_t f = 0; f < wanted; ++f) all[f] = from[f * stride];
         Rows rows;
         std::memcpy(static_cast<void*>(&rows), all.data(), sizeof rows);
         std::memcpy(joint.kept.data(), &rows.kept, kept * sizeof(float));
         joint.wrench = rows.wrench;
+        joint.before = rows.before;
+        joint.total = rows.total;
     }
 
   private:
@@ -307,9 +310,14 @@ struct Load {
         const double start = kind == DriveKind::turn ? now.value : 0;
         row.low = limited(drive.low - start);
         row.high = limited(drive.high - start);
-        if (drive.spring.frequency != 0) {
-            const double share = bound_share<D, L>(joint, pose, kind, now.axis, states, masses);
-            row.spring = spring_row(drive.spring, h, share);
+        // Only where one other part follows in the same pass are its rows sure to take back what moves them.
+        constexpr bool is_exact = L.linear == LinearPart::point && L.angular == AngularPart::none;
+        const bool is_sprung = drive.spring.frequency != 0;
+        const double share =
+            is_exact || is_sprung ? bound_share<D, L>(joint, pose, kind, now.axis, states, masses) : 1;
+        row.bound = is_exact ? static_cast<float>(share) : 1;
+        if (is_sprung) {
+            row.spring = spring_row(drive.spring, h, is_exact ? 1 : share);
             row.rest = static_cast<float>(drive.spring.rest - start);
         }
         row.before = static_cast<float>(now.speed);

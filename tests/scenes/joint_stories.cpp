@@ -56,7 +56,7 @@ template <int D>
 void expect_bridge(const std::string& name, double deepest) {
     Played<D> bridge(name);
     bridge.run(600);
-    EXPECT_LT(bridge.worst_error(), 2e-3);
+    EXPECT_LT(bridge.worst_error(), 1e-2);
     for (int i = 1; i <= 4; ++i)
         EXPECT_GT(bridge.world().position(bridge.body("crate " + std::to_string(i))).y, deepest);
 }
