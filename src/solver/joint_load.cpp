@@ -12,7 +12,7 @@ namespace carom::detail {
 
 template <int D>
 JointPose<D> pose_of(const JointRecord<D>& j, std::span<const BodyState<D>> states,
-                     std::span<const BodyMass<D>> masses) {
+                     std::span<const BodyMass<D>> masses, bool with_angle) {
     JointPose<D> p;
     const BodyState<D>& b = states[j.body_b];
     p.frame_b = b.rotation * j.frame_b;
@@ -30,8 +30,9 @@ JointPose<D> pose_of(const JointRecord<D>& j, std::span<const BodyState<D>> stat
         p.velocity_a = a.velocity;
         p.spin_a = a.angular_velocity;
     }
-    if constexpr (D == 2)
-        p.angle = whole_angle(b) - (j.body_a == no_body ? 0 : whole_angle(states[j.body_a]));
+    if constexpr (D == 2) {
+        if (with_angle) p.angle = whole_angle(b) - (j.body_a == no_body ? 0 : whole_angle(states[j.body_a]));
+    }
     return p;
 }
 
@@ -310,14 +311,9 @@ struct Load {
         const double start = kind == DriveKind::turn ? now.value : 0;
         row.low = limited(drive.low - start);
         row.high = limited(drive.high - start);
-        // Only where one other part follows in the same pass are its rows sure to take back what moves them.
-        constexpr bool is_exact = L.linear == LinearPart::point && L.angular == AngularPart::none;
-        const bool is_sprung = drive.spring.frequency != 0;
-        const double share =
-            is_exact || is_sprung ? bound_share<D, L>(joint, pose, kind, now.axis, states, masses) : 1;
-        row.bound = is_exact ? static_cast<float>(share) : 1;
-        if (is_sprung) {
-            row.spring = spring_row(drive.spring, h, is_exact ? 1 : share);
+        if (drive.spring.frequency != 0) {
+            const double share = bound_share<D, L>(joint, pose, kind, now.axis, states, masses);
+            row.spring = spring_row(drive.spring, h, share);
             row.rest = static_cast<float>(drive.spring.rest - start);
         }
         row.before = static_cast<float>(now.speed);
@@ -371,7 +367,7 @@ JointErrors errors(const JointRecord<D>& joint, const JointPose<D>& pose) {
 
 #define CAROM_INSTANTIATE(D)                                                            \
     template JointPose<D> pose_of(const JointRecord<D>&, std::span<const BodyState<D>>, \
-                                  std::span<const BodyMass<D>>);                        \
+                                  std::span<const BodyMass<D>>, bool);                  \
     template Measured<D> measure(const DriveSettings&, const JointPose<D>&);            \
     template JointErrors errors(const JointRecord<D>&, const JointPose<D>&);            \
     template const std::array<JointLoader<D>, layouts<D>.size()>& joint_loaders<D>();

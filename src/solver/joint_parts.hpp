@@ -333,10 +333,7 @@ struct JointPass {
             auto& base = rows.drives[i];
             DriveImpulses<F>& kept = rows.kept.drives[i];
             const Turned<D, F> n = direction<i>();
-            const F light = effective_mass<i>(n), mass = base.bound * light, now = coordinate<i>(n);
-            // The linear and angular part follow and take back what moves their rows, so that the coordinate
-            // answers like the mass that they bind it to.
-            const F mobility = inverse_or_zero(mass);
+            const F mass = effective_mass<i>(n), now = coordinate<i>(n), mobility = inverse_or_zero(mass);
             F rate = speed<i>(n);
             const auto set = [&](F& impulse, F next, F sign) CAROM_INLINE_LAMBDA {
                 const F change = sign * (next - impulse);
@@ -356,7 +353,7 @@ struct JointPass {
             set(kept.high, limit(below, -rate, mass, kept.high, base.low > F(-2e18f)), F(-1));
             if constexpr (biased) {
                 const F error = select(ranged, minimum(above, F(0)) - minimum(below, F(0)), above);
-                link.shift(along<i>(n, -(light * to_mend(error))));
+                link.shift(along<i>(n, -(mass * to_mend(error))));
             }
             if constexpr (!biased) base.before = speed<i>(n);
         }

@@ -118,7 +118,6 @@ struct DriveBase {
     SpringRow<F> spring{};
     F rest{}, offset{}, before{};
     F motor_speed{}, motor_most{};
-    F bound{};  ///< how much heavier the coordinate is because the joint's other rows bind the bodies (≥ 1)
 };
 
 template <int D, class F, LinearPart part>

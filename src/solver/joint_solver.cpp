@@ -102,6 +102,7 @@ void JointSolver<D>::make_batches(const JointInput<D>& input) {
 template <int D>
 void JointSolver<D>::fill(const JointInput<D>& input, const Batch& batch, const Part& part) {
     const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
+    const bool has_drives = layouts<D>[batch.layout].drive_count > 0;
     for (std::size_t block = part.begin; block < part.end; ++block) {
         float* to = rows(batch) + block * loader.fields * batch.width;
         for (std::size_t lane = 0; lane < batch.width; ++lane) {
@@ -111,8 +112,8 @@ void JointSolver<D>::fill(const JointInput<D>& input, const Batch& batch, const 
             some_fixed_[batch.first_block + block] |= fixed ? 1 : 0;
             if (joint_[place] == none) continue;
             JointRecord<D>& joint = input.joints[joint_[place]];
-            loader.load(joint, pose_of<D>(joint, input.states, input.masses), input.states, input.masses,
-                        input.substep, to + lane, batch.width);
+            loader.load(joint, pose_of<D>(joint, input.states, input.masses, has_drives), input.states,
+                        input.masses, input.substep, to + lane, batch.width);
         }
     }
 }

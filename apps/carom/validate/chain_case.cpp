@@ -28,8 +28,8 @@ struct Chain {
             } else {
                 rod.inertia = Symmetric3<double>{0.1 * inertia, inertia, inertia};
             }
-            rod.shapes.push_back({Capsule<D>{in_plane<D>(-0.45 * length, 0), in_plane<D>(0.45 * length, 0),
-                                             0.05 * length}});
+            rod.shapes.push_back(
+                {Capsule<D>{in_plane<D>(-0.45 * length, 0), in_plane<D>(0.45 * length, 0), 0.05 * length}});
             last = world.add_body(rod);
             JointDefinition<D> hinge;
             hinge.kind = HingeJoint<D>{.anchor = in_plane<D>(i * length, 0)};
@@ -64,8 +64,12 @@ void add_falling_chain(std::vector<Result>& results, int substeps) {
         run_until(chain.world, time);
         const Vec<D> error = chain.tip() - in_plane<D>(x, y);
         // The tip cracks like a whip at 0.5 s.
-        results.push_back({fmt::format("{}D, {} sub-steps, tip at {} s: x (m), error of both", D, substeps, time), x, chain.tip().x,
-                           length(error), {time < 0.5 ? 0.02 : 0.2, 1e-3}});
+        results.push_back(
+            {fmt::format("{}D, {} sub-steps, tip at {} s: x (m), error of both", D, substeps, time),
+             x,
+             chain.tip().x,
+             length(error),
+             {time < 0.5 ? 0.02 : 0.2, 1e-3}});
     }
 }
 

@@ -9,7 +9,7 @@ namespace carom::app {
 namespace {
 
 constexpr double small_swings = 2.006066680711;  // s, the period of a pendulum of 1 m
-constexpr int fine = 16;                          // sub-steps, of the steps of a game
+constexpr int fine = 16;                         // sub-steps, of the steps of a game
 
 /// A bob of 1 kg on a rod from `pivot` (the world's where there is none).
 template <int D>
@@ -71,12 +71,13 @@ double period(double angle, int substeps) {
 
 template <int D>
 void add_periods(std::vector<Result>& results, int substeps) {
-    constexpr std::pair<double, double> known[] = {{10, 1.001907188},  {30, 1.017408798},  {60, 1.073182007},
-                                                   {90, 1.180340599},  {120, 1.372880501}, {150, 1.762203730},
+    constexpr std::pair<double, double> known[] = {{10, 1.001907188}, {30, 1.017408798},  {60, 1.073182007},
+                                                   {90, 1.180340599}, {120, 1.372880501}, {150, 1.762203730},
                                                    {170, 2.439362720}};
     for (const auto& [degrees, ratio] : known)
         results.push_back(relative(fmt::format("{}D, {}°, {} sub-steps: period (s)", D, degrees, substeps),
-                                   small_swings * ratio, period<D>(degrees * degree, substeps), {2e-3, 1e-5}));
+                                   small_swings * ratio, period<D>(degrees * degree, substeps),
+                                   {2e-3, 1e-5}));
 }
 
 /// The time of a round of a bob that goes in a circle.
@@ -94,8 +95,8 @@ void add_conical(std::vector<Result>& results, double degrees, double reference,
         turned += std::remainder(now - before, 2 * pi);
         before = now;
     }
-    results.push_back(relative(fmt::format("3D, conical at {}°, {} sub-steps: period (s)", degrees, substeps), reference,
-                               2 * pi * steps * frame / turned, {2e-3, 1e-5}));
+    results.push_back(relative(fmt::format("3D, conical at {}°, {} sub-steps: period (s)", degrees, substeps),
+                               reference, 2 * pi * steps * frame / turned, {2e-3, 1e-5}));
 }
 
 template <int D>
@@ -130,8 +131,10 @@ void add_double_pendulum(std::vector<Result>& results, int substeps) {
         run_until(p.world, k.second);
         // After that the motion is chaos, in which errors grow tenfold a second.
         const Bounds bounds{0.1, 1e-3};
-        results.push_back(absolute(fmt::format("{}upper angle at {} s", what, k.second), k.upper, p.angle(1), bounds));
-        results.push_back(absolute(fmt::format("{}lower angle at {} s", what, k.second), k.lower, p.angle(2), bounds));
+        results.push_back(
+            absolute(fmt::format("{}upper angle at {} s", what, k.second), k.upper, p.angle(1), bounds));
+        results.push_back(
+            absolute(fmt::format("{}lower angle at {} s", what, k.second), k.lower, p.angle(2), bounds));
     }
     if (substeps != fine) return;  // at 4 sub-steps the energy wanders by 5 % in this time
     double worst = 0;
