@@ -12,6 +12,7 @@
 #include "carom/inertia.hpp"
 #include "carom/joints.hpp"
 #include "carom/mass.hpp"
+#include "carom/profile.hpp"
 #include "carom/queries.hpp"
 #include "carom/rotation.hpp"
 #include "carom/scheduler.hpp"

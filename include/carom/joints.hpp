@@ -81,8 +81,8 @@ struct BallJoint {
 /// Holds two bodies together. With a spring it gives way softly.
 template <int D>
 struct WeldJoint {
-    std::optional<Vec<D>> anchor{};  ///< of the force read back; the centre of mass of b when left out
-    std::optional<JointSpring> spring{};          ///< of the place; `rest` has no use
+    std::optional<Vec<D>> anchor{};       ///< of the force read back; the centre of mass of b when left out
+    std::optional<JointSpring> spring{};  ///< of the place; `rest` has no use
     std::optional<JointSpring> angular_spring{};  ///< of the angle
 };
 
@@ -106,11 +106,11 @@ struct WheelJoint {
         Vec<D> y{};
         y.y = 1;
         return y;
-    }();                                  ///< of the suspension, any length but zero
-    Vec3 spin_axis{0, 0, 1};              ///< 3D: of the wheel, not along `axis`
-    std::optional<JointLimits> limits{};  ///< of the suspension, m
-    std::optional<JointSpring> spring{};  ///< of the suspension
-    std::optional<JointMotor> motor{};    ///< of the wheel
+    }();                                           ///< of the suspension, any length but zero
+    Vec3 spin_axis{0, 0, 1};                       ///< 3D: of the wheel, not along `axis`
+    std::optional<JointLimits> limits{};           ///< of the suspension, m
+    std::optional<JointSpring> spring{};           ///< of the suspension
+    std::optional<JointMotor> motor{};             ///< of the wheel
     std::optional<JointMotor> steering{};          ///< 3D; without it the wheel is not steered
     std::optional<JointLimits> steering_limits{};  ///< 3D, rad, within ±π
 };
@@ -153,10 +153,10 @@ struct MotorJoint {
 /// Drags a point of b to a point of a, or of the world: the mouse.
 template <int D>
 struct TargetJoint {
-    Vec<D> anchor{};                  ///< the point of b
-    std::optional<Vec<D>> target{};   ///< where it shall go; `anchor` when left out
-    double frequency = 5;             ///< Hz, positive
-    double damping_ratio = 1;         ///< not negative
+    Vec<D> anchor{};                                       ///< the point of b
+    std::optional<Vec<D>> target{};                        ///< where it shall go; `anchor` when left out
+    double frequency = 5;                                  ///< Hz, positive
+    double damping_ratio = 1;                              ///< not negative
     double max = std::numeric_limits<double>::infinity();  ///< force, N, not negative
 };
 
@@ -176,7 +176,7 @@ struct JointDefinition {
         kind{};
     std::optional<BodyId<D>> a{};  ///< the world when left out
     BodyId<D> b{};
-    bool collide = false;  ///< may the two bodies touch each other?
+    bool collide = false;                                           ///< may the two bodies touch each other?
     double break_force = std::numeric_limits<double>::infinity();   ///< N, positive: it breaks beyond this
     double break_torque = std::numeric_limits<double>::infinity();  ///< N·m, positive
     std::string name{};

@@ -12,6 +12,7 @@
 #include "carom/events.hpp"
 #include "carom/forces.hpp"
 #include "carom/joints.hpp"
+#include "carom/profile.hpp"
 #include "carom/queries.hpp"
 #include "carom/scheduler.hpp"
 
@@ -123,6 +124,11 @@ class World {
     /// at first and with null, the thread that calls `step`. Worlds with little to do stay on that one
     /// anyway.
     void set_scheduler(std::shared_ptr<Scheduler> scheduler);
+    /// Whether steps note what their stages take; off at first. It changes nothing but the time, by less than
+    /// a microsecond a step.
+    void set_profiling(bool on);
+    /// What the last step took; empty unless it ran with profiling on. Good until the next step.
+    const StepProfile& profile() const;
 
     /// Adds a body with its shapes.
     BodyId<D> add_body(const BodyDefinition<D>& definition);
@@ -247,8 +253,8 @@ class World {
     /// nothing.
     double linear_error(JointId<D> joint) const;
     double angular_error(JointId<D> joint) const;
-    /// Force on b, and torque on b about its anchor, at the end of the last step, N and N·m. Of a pulley, gear
-    /// or rack the tension, or the torque or force on body b of its second joint.
+    /// Force on b, and torque on b about its anchor, at the end of the last step, N and N·m. Of a pulley,
+    /// gear or rack the tension, or the torque or force on body b of its second joint.
     Vec<D> joint_force(JointId<D> joint) const;
     Angular<D> joint_torque(JointId<D> joint) const;
     /// The joints that broke in the last step.

@@ -70,6 +70,13 @@ class Solver {
     // Contacts, by their number in the world. -----------------------------------------------------------
 
     std::size_t contacts() const { return count_; }
+    std::size_t largest_colour() const {
+        std::size_t most = 0;
+        for (int c = 0; c < Colours::count; ++c) most = std::max(most, sections_[c].contacts.size());
+        return most;
+    }
+    /// How many contacts found no colour.
+    std::size_t without_colour() const { return sections_[Colours::overflow].contacts.size(); }
     /// Takes up a contact of which a body can be pushed. With `cache`, `refresh` carries it along from then
     /// on; without, it is to be written before each step.
     void add(std::uint32_t contact, ContactRecord<D>& record, const ContactCache<D>* cache);

@@ -30,6 +30,17 @@ void World<D>::set_scheduler(std::shared_ptr<Scheduler> scheduler) {
 }
 
 template <int D>
+void World<D>::set_profiling(bool on) {
+    if (on != state_->profiler.has_value()) on ? void(state_->profiler.emplace()) : state_->profiler.reset();
+}
+
+template <int D>
+const StepProfile& World<D>::profile() const {
+    static const StepProfile none;
+    return state_->profiler ? state_->profiler->profile : none;
+}
+
+template <int D>
 void World<D>::set_gravity(const Vec<D>& gravity) {
     require_finite(gravity, "gravity");
     state_->definition.gravity = gravity;

@@ -10,6 +10,7 @@
 #include "core/adjacency.hpp"
 #include "core/crew.hpp"
 #include "core/pair_set.hpp"
+#include "core/profiler.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
@@ -100,6 +101,7 @@ template <int D>
 struct WorldState {
     WorldDefinition<D> definition;
     std::shared_ptr<Scheduler> scheduler;  ///< or none: then all is done by the calling thread
+    std::optional<Profiler> profiler;      ///< if the user wants to know what steps take
     double time = 0;
     double last_step = 0;
     std::uint64_t step_count = 0;
@@ -188,6 +190,7 @@ struct WorldState {
 
     // step.cpp: the stages of a step, in the order of `step`.
     void step(double dt);
+    void count_work(StepProfile& profile) const;
     void begin_step(double dt);
     void list_moving();
     void list_awake(std::uint32_t body);
