@@ -18,11 +18,15 @@ struct Material {
     double restitution = 0;  ///< share of the approach speed that comes back, 0 … 1; a pair uses the larger
     double rolling_resistance =
         0;  ///< coefficient c: the resisting torque is at most c · radius · normal force
+
+    friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// A disk in the plane, a solid sphere in space, about the origin of the shape's frame.
 struct Ball {
     double radius = 0.5;  ///< m, positive
+
+    friend bool operator==(const Ball&, const Ball&) = default;
 };
 
 /// A rectangle or a cuboid, centred on the origin of the shape's frame.
@@ -30,6 +34,8 @@ template <int D>
 struct Box {
     Vec<D> size{};        ///< full lengths, m, positive, the rounding included
     double rounding = 0;  ///< radius of the rounded edges, m, 0 … half of the smallest length
+
+    friend bool operator==(const Box&, const Box&) = default;
 };
 
 /// All points within `radius` of the segment from `from` to `to`.
@@ -38,6 +44,8 @@ struct Capsule {
     Vec<D> from{};        ///< m
     Vec<D> to{};          ///< m
     double radius = 0.5;  ///< m, positive
+
+    friend bool operator==(const Capsule&, const Capsule&) = default;
 };
 
 /// The convex hull of `points` (at least D + 1 that span an area or a volume, at most 4096 in 3D), grown by
@@ -46,6 +54,8 @@ template <int D>
 struct Hull {
     std::vector<Vec<D>> points{};  ///< m, in any order
     double rounding = 0;           ///< m, not negative
+
+    friend bool operator==(const Hull&, const Hull&) = default;
 };
 
 /// The half-space n · x ≤ offset. Only fixed bodies carry it; it has no mass.
@@ -53,18 +63,24 @@ template <int D>
 struct Plane {
     Vec<D> normal{};    ///< out of the solid; any length but zero
     double offset = 0;  ///< m, along the unit normal
+
+    friend bool operator==(const Plane&, const Plane&) = default;
 };
 
 /// A solid cylinder about the y axis of the shape's frame, centred on its origin.
 struct Cylinder {
     double radius = 0.5;  ///< m, positive
     double height = 1;    ///< m, positive
+
+    friend bool operator==(const Cylinder&, const Cylinder&) = default;
 };
 
 /// A solid cone about the y axis of the shape's frame; the base lies at y = −height/2, the tip at +height/2.
 struct Cone {
     double radius = 0.5;  ///< m, positive
     double height = 1;    ///< m, positive
+
+    friend bool operator==(const Cone&, const Cone&) = default;
 };
 
 /// A line of segments through `points`, the ground of the plane. What lies to the right of the direction of
@@ -76,6 +92,8 @@ struct Chain {
     bool two_sided = false;      ///< the segments stop shapes from either side
     std::vector<Material> materials{};  ///< of single segments; without any, the shape's is that of all
     std::vector<std::uint16_t> material_of{};  ///< for each segment the index of its material
+
+    friend bool operator==(const Chain&, const Chain&) = default;
 };
 
 /// A surface of triangles, the ground of space; it need not be closed. A triangle stops shapes whose centre
@@ -88,6 +106,8 @@ struct Mesh {
     bool two_sided = false;             ///< the triangles stop shapes from either side
     std::vector<Material> materials{};  ///< of single triangles; without any, the shape's is that of all
     std::vector<std::uint16_t> material_of{};  ///< for each triangle the index of its material
+
+    friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 
 /// Ground given by its height above evenly spaced places, +y being up; what is below is solid. It begins at
@@ -102,6 +122,8 @@ struct HeightField {
     std::array<double, D - 1> spacing{};       ///< m, positive
     std::vector<Material> materials{};         ///< of single cells; without any, the shape's is that of all
     std::vector<std::uint16_t> material_of{};  ///< for each cell, row by row, the index of its material
+
+    friend bool operator==(const HeightField&, const HeightField&) = default;
 };
 
 using Box2 = Box<2>;
@@ -128,6 +150,8 @@ struct Filter {
     std::uint64_t category = 1;
     std::uint64_t mask = ~std::uint64_t{0};
     std::int32_t group = 0;
+
+    friend bool operator==(const Filter&, const Filter&) = default;
 };
 
 /// A shape as it is put on a body.
@@ -148,6 +172,8 @@ struct ShapeDefinition {
     /// is dragged along by friction; only the part along the surface counts.
     Vec<D> surface_velocity{};
     std::uint64_t user_data = 0;  ///< yours
+
+    friend bool operator==(const ShapeDefinition&, const ShapeDefinition&) = default;
 };
 
 using ShapeDefinition2 = ShapeDefinition<2>;

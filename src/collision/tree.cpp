@@ -38,10 +38,16 @@ void Tree<D>::free(std::int32_t node) {
 
 template <int D>
 std::int32_t Tree<D>::insert(const OuterBox<D>& box, std::uint32_t payload) {
+    const std::int32_t leaf = add_leaf(box, payload);
+    attach(leaf);
+    return leaf;
+}
+
+template <int D>
+std::int32_t Tree<D>::add_leaf(const OuterBox<D>& box, std::uint32_t payload) {
     const std::int32_t leaf = allocate();
     nodes_[leaf].box = box;
     nodes_[leaf].child[1] = std::int32_t(payload);
-    attach(leaf);
     ++leaf_count_;
     return leaf;
 }
@@ -218,40 +224,43 @@ void Tree<D>::refit() {
 template <int D>
 void Tree<D>::build(std::span<const Entry> entries) {
     clear();
-    leaf_count_ = std::int32_t(entries.size());
     nodes_.reserve(2 * entries.size());
-    std::vector<std::int32_t> leaves;
-    for (const Entry& entry : entries) {
-        leaves.push_back(allocate());
-        nodes_.back().box = entry.box;
-        nodes_.back().child[1] = std::int32_t(entry.payload);
+    for (const Entry& entry : entries) add_leaf(entry.box, entry.payload);
+    rebuild();
+}
+
+template <int D>
+void Tree<D>::insert_all(std::span<const Entry> entries, std::span<std::int32_t> leaves) {
+    constexpr std::size_t few = 64;
+    const bool at_once = entries.size() > few && 4 * entries.size() > static_cast<std::size_t>(leaf_count_);
+    if (at_once) nodes_.reserve(nodes_.size() + 2 * entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        leaves[i] = add_leaf(entries[i].box, entries[i].payload);
+        if (!at_once) attach(leaves[i]);
     }
-    build_inner(leaves);
+    if (at_once) rebuild();
 }
 
 template <int D>
 void Tree<D>::rebuild() {
-    std::vector<std::int32_t> leaves;
+    std::vector<Piece> pieces;
+    pieces.reserve(static_cast<std::size_t>(leaf_count_));
     for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
         if (nodes_[i].height == 0)
-            leaves.push_back(i);
+            pieces.push_back({nodes_[i].box, center_of(nodes_[i].box), i});
         else if (nodes_[i].height > 0)
             free(i);
     }
-    build_inner(leaves);
-}
-
-template <int D>
-void Tree<D>::build_inner(std::vector<std::int32_t>& leaves) {
     root_ = none;
-    if (leaves.empty()) return;
     std::vector<std::int32_t> inner;
-    std::vector<Part> parts{{0, leaves.size(), none, 0}};
+    inner.reserve(pieces.size());
+    std::vector<Part> parts;
+    if (!pieces.empty()) parts.push_back({0, pieces.size(), none, 0});
     while (!parts.empty()) {
         const Part part = parts.back();
         parts.pop_back();
         const bool single = part.end - part.begin == 1;
-        const std::int32_t node = single ? leaves[part.begin] : allocate();
+        const std::int32_t node = single ? pieces[part.begin].leaf : allocate();
         nodes_[node].parent = part.parent;
         if (part.parent == none)
             root_ = node;
@@ -260,7 +269,7 @@ void Tree<D>::build_inner(std::vector<std::int32_t>& leaves) {
         if (single) continue;
         inner.push_back(node);
         const std::size_t middle =
-            part.begin + split(std::span(leaves).subspan(part.begin, part.end - part.begin));
+            part.begin + split(std::span(pieces).subspan(part.begin, part.end - part.begin));
         parts.push_back({middle, part.end, node, 1});
         parts.push_back({part.begin, middle, node, 0});
     }
@@ -268,11 +277,22 @@ void Tree<D>::build_inner(std::vector<std::int32_t>& leaves) {
     for (auto node = inner.rbegin(); node != inner.rend(); ++node) enclose_children(*node);
 }
 
-/// Orders the leaves so that the first ones, as many as it returns, make one half and the rest the other, at
+/// The middle of the box; what is infinite both ways has its centre at 0.
+template <int D>
+Vec<D, float> Tree<D>::center_of(const OuterBox<D>& box) {
+    constexpr float furthest = 1e30f;
+    Vec<D, float> center;
+    for (int i = 0; i < D; ++i)
+        center[i] = 0.5f * std::max(box.lower[i], -furthest) + 0.5f * std::min(box.upper[i], furthest);
+    return center;
+}
+
+/// Orders the pieces so that the first ones, as many as it returns, make one half and the rest the other, at
 /// the least of (number · surface) summed over both, tried at the borders of equal bins of the centres.
 template <int D>
-std::size_t Tree<D>::split(std::span<std::int32_t> leaves) const {
-    constexpr int bin_count = 16;
+std::size_t Tree<D>::split(std::span<Piece> pieces) {
+    constexpr int most_bins = 16;
+    const int bin_count = int(std::min<std::size_t>(most_bins, pieces.size()));
     struct Bin {
         OuterBox<D> box{};
         std::size_t count = 0;
@@ -283,32 +303,28 @@ std::size_t Tree<D>::split(std::span<std::int32_t> leaves) const {
         }
         double cost() const { return double(count) * half_surface(box); }
     };
-    const auto center = [&](std::int32_t leaf) {
-        constexpr double furthest = 1e100;  // so that what is infinite both ways has its centre at 0
-        Aabb<D> box = widened(nodes_[leaf].box);
+    if (pieces.size() == 2) return 1;
+    Vec<D, float> least = pieces[0].center, most = least;
+    for (const Piece& piece : pieces) {
         for (int i = 0; i < D; ++i) {
-            box.lower[i] = std::max(box.lower[i], -furthest);
-            box.upper[i] = std::min(box.upper[i], furthest);
+            least[i] = std::min(least[i], piece.center[i]);
+            most[i] = std::max(most[i], piece.center[i]);
         }
-        return 0.5 * (box.lower + box.upper);
-    };
-
-    Aabb<D> centers{center(leaves[0]), center(leaves[0])};
-    for (const std::int32_t leaf : leaves) centers = merged(centers, Aabb<D>{center(leaf), center(leaf)});
-    const Vec<D> size = centers.upper - centers.lower;
+    }
+    const Vec<D, float> size = most - least;
     int axis = 0;
     for (int i = 1; i < D; ++i)
         if (size[i] > size[axis]) axis = i;
-    if (!(size[axis] > 0)) return leaves.size() / 2;
+    if (!(size[axis] > 0)) return pieces.size() / 2;
 
-    const auto bin_of = [&](std::int32_t leaf) {
-        return std::min(bin_count - 1,
-                        int((center(leaf)[axis] - centers.lower[axis]) / size[axis] * bin_count));
+    const float per_length = static_cast<float>(bin_count) / size[axis];
+    const auto bin_of = [&](const Piece& piece) {
+        return std::min(bin_count - 1, int((piece.center[axis] - least[axis]) * per_length));
     };
-    std::array<Bin, bin_count> bins{};
-    for (const std::int32_t leaf : leaves) bins[bin_of(leaf)].add(nodes_[leaf].box, 1);
+    std::array<Bin, most_bins> bins;
+    for (const Piece& piece : pieces) bins[bin_of(piece)].add(piece.box, 1);
 
-    std::array<double, bin_count> cost{};  // of a border before bin i
+    std::array<double, most_bins> cost{};  // of a border before bin i
     Bin left, right;
     for (int i = 1; i < bin_count; ++i) {
         if (bins[i - 1].count) left.add(bins[i - 1].box, bins[i - 1].count);
@@ -318,12 +334,11 @@ std::size_t Tree<D>::split(std::span<std::int32_t> leaves) const {
         if (bins[i].count) right.add(bins[i].box, bins[i].count);
         cost[i] += right.cost();
     }
-    // The outermost bins hold a leaf each, so no border leaves a side empty.
-    const int border = int(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
-    std::size_t middle = 0;
-    for (std::int32_t& leaf : leaves)
-        if (bin_of(leaf) < border) std::swap(leaf, leaves[middle++]);
-    return middle;
+    // The outermost bins hold a piece each, so no border leaves a side empty.
+    const int border = int(std::min_element(cost.begin() + 1, cost.begin() + bin_count) - cost.begin());
+    const auto middle =
+        std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return bin_of(p) < border; });
+    return std::size_t(middle - pieces.begin());
 }
 
 template <int D>

@@ -65,6 +65,9 @@ class Tree {
     /// Replaces all by a tree built at once: entry i becomes leaf i (Wald: On fast Construction of SAH-based
     /// Bounding Volume Hierarchies, 2007).
     void build(std::span<const Entry> entries);
+    /// Adds many leaves, whose indices go into `leaves`: where they are many beside those that there are, by
+    /// building the tree anew.
+    void insert_all(std::span<const Entry> entries, std::span<std::int32_t> leaves);
     /// Builds the tree anew over the leaves that it has; they keep their indices.
     void rebuild();
 
@@ -113,6 +116,13 @@ class Tree {
         bool leaf() const { return child[0] == none; }
     };
 
+    /// A leaf while the tree is built.
+    struct Piece {
+        OuterBox<D> box;
+        Vec<D, float> center;
+        std::int32_t leaf;
+    };
+
     std::int32_t allocate();
     void free(std::int32_t node);
     std::int32_t best_sibling(const OuterBox<D>& box);
@@ -123,8 +133,9 @@ class Tree {
     void rotate_at(std::int32_t node);
     void refit_upwards(std::int32_t node, bool rotate);
     void refit();
-    void build_inner(std::vector<std::int32_t>& leaves);
-    std::size_t split(std::span<std::int32_t> leaves) const;
+    std::int32_t add_leaf(const OuterBox<D>& box, std::uint32_t payload);
+    static Vec<D, float> center_of(const OuterBox<D>& box);
+    static std::size_t split(std::span<Piece> pieces);
 
     std::vector<Node> nodes_;
     std::int32_t root_ = none;

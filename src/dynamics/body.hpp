@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,14 @@ struct Load {
     Angular<D> torque{};
 };
 
+/// What the user gave in place of what the shapes say.
+template <int D>
+struct MassOverrides {
+    std::optional<double> mass{};
+    std::optional<Vec<D>> center_of_mass{};
+    std::optional<Inertia<D>> inertia{};
+};
+
 /// What else the world knows of a body.
 template <int D>
 struct BodyInfo {
@@ -52,14 +62,15 @@ struct BodyInfo {
     bool awake = true;
     bool can_sleep = true;
     bool bullet = false;
-    bool disabled = false;         ///< quarantined: it stays where it is and nothing touches it
-    bool mass_overridden = false;  ///< `mass` and so on were given by the user and do not follow the shapes
-    double rest_time = 0;          ///< how long it has been slow and in its place, s
-    Transform<D> rest{};           ///< that place: centre of mass and rotation when the rest began
+    bool disabled = false;  ///< quarantined: it stays where it is and nothing touches it
+    double rest_time = 0;   ///< how long it has been slow and in its place, s
+    Transform<D> rest{};    ///< that place: centre of mass and rotation when the rest began
     std::vector<ShapeId<D>> shapes;
     std::vector<std::uint32_t> ignored;  ///< indices of the bodies with which it does not collide, ascending
     std::vector<std::uint32_t> jointed;  ///< the same because of joints: once for each
-    BodyDefinition<D> definition;        ///< as given, without the shapes: overrides, name and user data
+    std::string name;
+    std::uint64_t user_data = 0;
+    std::shared_ptr<const MassOverrides<D>> overrides;  ///< nothing where there are none
 };
 
 /// Placement of the body's frame.

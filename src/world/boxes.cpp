@@ -39,6 +39,7 @@ void WorldState<D>::change_tree(std::uint32_t body, TreeKind kind) {
     if (tree_of[body] == kind) return;
     for (const ShapeId<D>& id : infos[body].shapes) {
         std::int32_t& leaf = shapes[id.index].leaf;
+        if (leaf == Tree<D>::none) continue;
         trees[tree_of[body]].remove(leaf);
         leaf = trees[kind].insert(fat_boxes[id.index], id.index);
     }
@@ -56,13 +57,46 @@ template <int D>
 void WorldState<D>::insert_leaf(std::uint32_t shape) {
     ShapeRecord<D>& s = shapes[shape];
     fat_boxes[shape] = bounds(s.shape, frame_of(s.body));
-    s.leaf = trees[tree_of[s.body]].insert(fat_boxes[shape], shape);
+    s.leaf = Tree<D>::none;
+    unplanted.push_back(shape);
+    some_unplanted.store(true, std::memory_order_relaxed);
     mark_moved(shape);
+}
+
+/// Shapes come into the trees together, before anybody looks there: a tree that is built over many at once is
+/// better, and far cheaper.
+template <int D>
+void WorldState<D>::plant() {
+    if (unplanted.empty()) return;
+    std::array<std::vector<typename Tree<D>::Entry>, 3> entries;
+    for (const std::uint32_t shape : unplanted) {
+        const bool is_gone = !shape_slots.in_use(shape) || shapes[shape].leaf != Tree<D>::none;
+        if (is_gone) continue;  // or it came back and is listed twice
+        shapes[shape].leaf = 0;
+        entries[tree_of[shapes[shape].body]].push_back({fat_boxes[shape], shape});
+    }
+    unplanted.clear();
+    std::vector<std::int32_t> leaves;
+    for (std::size_t kind = 0; kind < trees.size(); ++kind) {
+        leaves.resize(entries[kind].size());
+        trees[kind].insert_all(entries[kind], leaves);
+        for (std::size_t i = 0; i < leaves.size(); ++i) shapes[entries[kind][i].payload].leaf = leaves[i];
+    }
+    some_unplanted.store(false, std::memory_order_release);
+}
+
+/// Several threads may ask at once; the first of them plants.
+template <int D>
+void WorldState<D>::plant_for_queries() {
+    if (!some_unplanted.load(std::memory_order_acquire)) return;
+    const std::lock_guard lock(planting);
+    plant();
 }
 
 template <int D>
 void WorldState<D>::remove_leaf(std::uint32_t shape) {
-    trees[tree_of[shapes[shape].body]].remove(shapes[shape].leaf);
+    if (shapes[shape].leaf != Tree<D>::none) trees[tree_of[shapes[shape].body]].remove(shapes[shape].leaf);
+    shapes[shape].leaf = Tree<D>::none;
 }
 
 template <int D>
@@ -150,6 +184,8 @@ void WorldState<D>::keep_in_boxes(double dt) {
     template void WorldState<D>::mark_moved(std::uint32_t);            \
     template void WorldState<D>::insert_leaf(std::uint32_t);           \
     template void WorldState<D>::remove_leaf(std::uint32_t);           \
+    template void WorldState<D>::plant();                              \
+    template void WorldState<D>::plant_for_queries();                  \
     template void WorldState<D>::refresh_boxes(double);                \
     template void WorldState<D>::keep_in_boxes(double);
 CAROM_INSTANTIATE(2)

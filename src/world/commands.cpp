@@ -47,116 +47,6 @@ void World<D>::set_gravity(const Vec<D>& gravity) {
     state_->wake_all();
 }
 
-namespace {
-
-template <int D>
-std::uint32_t new_body_place(WorldState<D>& w) {
-    const std::uint32_t i = w.body_slots.acquire();
-    if (i == w.states.size()) {
-        w.states.emplace_back();
-        w.masses.emplace_back();
-        w.types.emplace_back();
-        w.infos.emplace_back();
-        w.applied.emplace_back();
-        w.tree_of.push_back(of_fixed);
-        w.moving.push_back(stands_still);
-        w.place.emplace_back();
-        w.loads.emplace_back();
-        w.varies.emplace_back();
-        w.fixed_contacts_of.push_back(0);
-    }
-    w.states[i] = {};
-    w.masses[i] = {};
-    w.infos[i] = {};
-    w.applied[i] = {};
-    return i;
-}
-
-/// As long as none of these has come to the other side of a wall, nothing has passed through.
-template <int D>
-Shape<D> core_of(const Shape<D>& shape) {
-    if (shape.kind == ShapeKind::plane || shape.kind == ShapeKind::terrain) return {};
-    Shape<D> ball = inner_ball(shape);
-    ball.radius *= 0.5;
-    return ball;
-}
-
-template <int D>
-void make_into(WorldState<D>& w, std::uint32_t i, const ShapeDefinition<D>& definition, Shape<D> shape) {
-    ShapeRecord<D>& s = w.shapes[i];
-    const Filter& filter = definition.filter;
-    w.company[i] = {filter.category, filter.mask,       s.body,
-                    filter.group,    definition.sensor, shape.kind == ShapeKind::terrain};
-    s.shape = std::move(shape);
-    s.definition = definition;
-    s.core = core_of(s.shape);
-}
-
-template <int D>
-ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeDefinition<D>& definition,
-                     Shape<D> shape) {
-    const std::uint32_t i = w.shape_slots.acquire();
-    if (i == w.shapes.size()) {
-        w.shapes.emplace_back();
-        w.company.emplace_back();
-        w.fat_boxes.emplace_back();
-        w.has_new_box.push_back(0);
-        w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
-    }
-    w.shapes[i] = {{}, {}, body};
-    make_into(w, i, definition, std::move(shape));
-    const auto id = w.shape_slots.template id<ShapeId<D>>(i);
-    w.infos[body].shapes.push_back(id);
-    return id;
-}
-
-template <int D>
-void drop_shape(WorldState<D>& w, ShapeId<D> id) {
-    w.remove_contacts_of_shape(id.index);
-    w.remove_visits_of(id.index);
-    w.remove_leaf(id.index);
-    w.shape_slots.release(id.index);
-}
-
-}  // namespace
-
-template <int D>
-BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
-    std::vector<Shape<D>> shapes = validate(definition);
-    WorldState<D>& w = *state_;
-    const std::uint32_t i = new_body_place(w);
-    w.types[i] = definition.type;
-    BodyState<D>& s = w.states[i];
-    s.position = definition.position;
-    s.rotation = normalized(definition.rotation);
-    BodyInfo<D>& info = w.infos[i];
-    info.can_sleep = definition.can_sleep;
-    info.bullet = definition.bullet;
-    w.bullets += definition.bullet;
-    info.definition = definition;
-    info.definition.shapes.clear();
-    BodyMass<D>& m = w.masses[i];
-    m.gravity_scale = definition.gravity_scale;
-    m.linear_damping = definition.linear_damping;
-    m.angular_damping = definition.angular_damping;
-    m.locks = definition.locks;
-    w.some_locked |= definition.locks != Locks{};
-    for (std::size_t k = 0; k < shapes.size(); ++k)
-        put_shape(w, i, definition.shapes[k], std::move(shapes[k]));
-    w.update_mass(i);  // moves the state from the frame to the centre of mass
-    if (definition.type != BodyType::fixed) {
-        s.velocity = free_components<D>(m.locks, definition.velocity);
-        s.angular_velocity = free_spin<D>(m.locks, definition.angular_velocity);
-        w.movable.push_back(i);
-        w.roused.push_back(i);
-    }
-    w.tree_of[i] = w.tree_for(i);
-    for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
-    const auto id = w.body_slots.template id<BodyId<D>>(i);
-    w.body_ids.push_back(id);
-    return id;
-}
-
 template <int D>
 void World<D>::remove_body(BodyId<D> body) {
     WorldState<D>& w = *state_;
@@ -180,69 +70,6 @@ void World<D>::remove_body(BodyId<D> body) {
     std::erase(w.movable, i);
     std::erase(w.body_ids, body);
     w.body_slots.release(i);
-}
-
-template <int D>
-ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definition) {
-    WorldState<D>& w = *state_;
-    const std::uint32_t i = w.index(body);
-    Shape<D> shape = make_shape(definition);
-    require_place_for(shape, w.types[i]);
-    const ShapeId<D> id = put_shape(w, i, definition, std::move(shape));
-    w.update_mass(i);
-    w.forget_manifolds_of(i);
-    w.insert_leaf(id.index);
-    w.wake(i);
-    return id;
-}
-
-template <int D>
-void World<D>::remove_shape(ShapeId<D> shape) {
-    WorldState<D>& w = *state_;
-    const std::uint32_t body = w.shapes[w.index(shape)].body;
-    std::vector<ShapeDefinition<D>> rest;
-    for (const ShapeId<D>& id : w.infos[body].shapes) {
-        if (id != shape) rest.push_back(w.shapes[id.index].definition);
-    }
-    body_mass<D>(w.infos[body].definition, rest);
-    w.wake_neighbours(body);
-    w.wake_islands();
-    drop_shape(w, shape);
-    std::erase(w.infos[body].shapes, shape);
-    w.update_mass(body);
-    w.forget_manifolds_of(body);
-}
-
-template <int D>
-void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition) {
-    WorldState<D>& w = *state_;
-    const std::uint32_t i = w.index(shape), body = w.shapes[i].body;
-    Shape<D> made = make_shape(definition);
-    require_place_for(made, w.types[body]);
-    std::vector<ShapeDefinition<D>> all;
-    for (const ShapeId<D>& id : w.infos[body].shapes)
-        all.push_back(id == shape ? definition : w.shapes[id.index].definition);
-    body_mass<D>(w.infos[body].definition, all);
-
-    const Filter &before = w.shapes[i].definition.filter, &now = definition.filter;
-    // Contacts with a terrain name its facets, which are others now.
-    const bool is_ground = made.kind == ShapeKind::terrain || w.shapes[i].shape.kind == ShapeKind::terrain;
-    const bool same_company = !is_ground && w.shapes[i].definition.sensor == definition.sensor &&
-                              before.category == now.category && before.mask == now.mask &&
-                              before.group == now.group;
-    w.wake_neighbours(body);
-    w.wake_islands();
-    if (!same_company) {
-        w.remove_contacts_of_shape(i);
-        w.remove_visits_of(i);
-    }
-    make_into(w, i, definition, std::move(made));
-    w.update_mass(body);
-    w.forget_manifolds_of(body);
-    w.remove_leaf(i);
-    w.insert_leaf(i);
-    w.each_contact_of_shape(i, [&](std::uint32_t contact) { w.set_surface(w.contacts[contact]); });
-    w.place_visits_anew(i);
 }
 
 template <int D>
@@ -347,17 +174,15 @@ template <int D>
 void World<D>::set_type(BodyId<D> body, BodyType type) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(body);
-    std::vector<ShapeDefinition<D>> definitions;
+    std::vector<const ShapeDefinition<D>*> definitions;
     for (const ShapeId<D>& id : w.infos[i].shapes) {
-        definitions.push_back(w.shapes[id.index].definition);
+        definitions.push_back(w.shapes[id.index].definition.get());
         if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
             throw Error("type: a body with a plane must be fixed");
         if (w.shapes[id.index].shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
             throw Error("type: a body with a chain, mesh or height field must be fixed or kinematic");
     }
-    BodyDefinition<D> changed = w.infos[i].definition;
-    changed.type = type;
-    body_mass<D>(changed, definitions);
+    body_mass<D>(type, overrides_of(w.infos[i]), definitions);
     w.wake_neighbours(i);
     w.wake_islands();
     w.remove_contacts_of(i);
@@ -366,7 +191,6 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
         w.remove_leaf(id.index);
     }
     w.types[i] = type;
-    w.infos[i].definition.type = type;
     w.infos[i].awake = true;
     std::erase(w.movable, i);
     if (type == BodyType::fixed) {
@@ -415,10 +239,8 @@ void World<D>::set_mass_properties(BodyId<D> body, const MassProperties<D>& prop
     require_positive(properties.mass, "mass");
     require_finite(properties.center, "center");
     validate_inertia(properties.inertia);
-    BodyDefinition<D>& d = state_->infos[i].definition;
-    d.mass = properties.mass;
-    d.center_of_mass = properties.center;
-    d.inertia = properties.inertia;
+    const MassOverrides<D> given{properties.mass, properties.center, properties.inertia};
+    state_->infos[i].overrides = std::make_shared<const MassOverrides<D>>(given);
     state_->update_mass(i);
     state_->forget_manifolds_of(i);
     state_->wake(i);
@@ -426,7 +248,7 @@ void World<D>::set_mass_properties(BodyId<D> body, const MassProperties<D>& prop
 
 template <int D>
 void World<D>::set_user_data(BodyId<D> body, std::uint64_t user_data) {
-    state_->infos[state_->index(body)].definition.user_data = user_data;
+    state_->infos[state_->index(body)].user_data = user_data;
 }
 
 template <int D>

@@ -151,9 +151,9 @@ void WorldState<D>::stop_at_obstacles() {
     if (!definition.continuous) return;
     // A one-way shape lets pass what goes out of its open side.
     const auto lets_pass = [&](const ContactRecord<D>& c, std::uint32_t body, std::uint32_t shape) {
-        if (!c.special || !shapes[shape].definition.one_way) return false;
+        if (!c.special || !shapes[shape].definition->one_way) return false;
         const Vec<D> way = states[body].position - before[place[body]].position;
-        return c.passing || dot(way, rotate(axes_of(shape), *shapes[shape].definition.one_way)) >= 0;
+        return c.passing || dot(way, rotate(axes_of(shape), *shapes[shape].definition->one_way)) >= 0;
     };
     list_fast_contacts();
     for (const FixedContact& f : fixed_contacts) {
@@ -190,20 +190,23 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const BodyMass<D>& mass = masses[body];
     const BodyState<D>& start = earlier(body);
     const ShapeRecord<D>& own = shapes[shape];
-    const Vec<D> first = apply(frame(start, mass), own.core.a);
-    const Vec<D> last = apply(frame_of(body), own.core.a);
+    const Vec<D> first = apply(frame(start, mass), own.core);
+    const Vec<D> last = apply(frame_of(body), own.core);
     const std::uint32_t other_body = shapes[other].body;
     // How far the core came as seen from the obstacle.
     const Vec<D> seen_first = apply_inverse(frame(earlier(other_body), masses[other_body]), first);
     const Vec<D> seen_last = apply_inverse(frame_of(other_body), last);
-    if (length(seen_last - seen_first) <= seen_share * own.core.radius) return;
+    if (length(seen_last - seen_first) <= seen_share * own.core_radius) return;
 
     const StepMotion<D> sweep(start, states[body]);
     const Obstacle<D> obstacle{shapes[other].shape, facet,
                                StepMotion<D>(earlier(other_body), states[other_body]), masses[other_body]};
-    const auto passes = first_meeting(own.core, mass, sweep, obstacle, 1e-3 * own.core.radius);
+    Shape<D> core;
+    core.a = own.core;
+    core.radius = own.core_radius;
+    const auto passes = first_meeting(core, mass, sweep, obstacle, 1e-3 * own.core_radius);
     if (!passes) return;
-    const double near = std::min(0.5 * speculative_distance, 0.2 * own.core.radius);
+    const double near = std::min(0.5 * speculative_distance, 0.2 * own.core_radius);
     const auto meets = first_meeting(own.shape, mass, sweep, obstacle, near);
     if (meets && meets->share > 0) {
         const BodyState<D> stopped = sweep.at(std::min(meets->share, passes->share));
@@ -216,7 +219,7 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const Transform<D> then = frame(obstacle.sweep.at(passes->share), obstacle.mass),
                        now = frame_of(other_body);
     const auto carried = [&](const Vec<D>& v) { return rotate(now.rotation, unrotate(then.rotation, v)); };
-    const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core.a);
+    const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core);
     const Vec<D> axis = carried(passes->axis);
     const double inwards = dot(axis, now.position + carried(there - then.position) - last);
     if (inwards > 0) states[body].position += inwards * axis;

@@ -4,6 +4,7 @@
 
 #include "math/check.hpp"
 #include "world/state.hpp"
+#include "world/validate.hpp"
 
 namespace carom::detail {
 
@@ -36,55 +37,60 @@ bool is_isotropic(const Symmetric3<double>& i) {
 }
 
 template <int D>
-MassProperties<D> sum_of_shapes(const std::vector<ShapeDefinition<D>>& shapes) {
+MassProperties<D> sum_of_shapes(ShapesOf<D> shapes) {
     std::vector<MassProperties<D>> parts;
-    const bool only_sensors = std::ranges::all_of(shapes, &ShapeDefinition<D>::sensor);
-    for (const ShapeDefinition<D>& s : shapes) {
-        if (!s.sensor || only_sensors) parts.push_back(carom::mass_properties<D>(s));
+    const bool only_sensors = std::ranges::all_of(shapes, [](const auto* s) { return s->sensor; });
+    for (const ShapeDefinition<D>* s : shapes) {
+        if (!s->sensor || only_sensors) parts.push_back(carom::mass_properties<D>(*s));
     }
     return combine<D>(parts);
 }
 
 /// What the shapes give, and what the user put in its place.
 template <int D>
-MassProperties<D> resolve(const BodyDefinition<D>& definition, std::vector<ShapeDefinition<D>> shapes) {
-    MassProperties<D> p = sum_of_shapes(shapes);
+MassProperties<D> resolve(const MassOverrides<D>& given, ShapesOf<D> shapes) {
+    MassProperties<D> p = sum_of_shapes<D>(shapes);
     if (p.mass == 0) {  // shapes without density still say how the given mass is spread
-        for (ShapeDefinition<D>& s : shapes) s.material.density = 1;
-        p = sum_of_shapes(shapes);
-        if (!definition.mass) p.mass = 0;
+        std::vector<ShapeDefinition<D>> dense;
+        for (const ShapeDefinition<D>* s : shapes) dense.push_back(*s);
+        std::vector<const ShapeDefinition<D>*> list;
+        for (ShapeDefinition<D>& s : dense) {
+            s.material.density = 1;
+            list.push_back(&s);
+        }
+        p = sum_of_shapes<D>(list);
+        if (!given.mass) p.mass = 0;
     }
-    if (definition.mass) {
-        p.inertia = p.mass > 0 ? p.inertia * (*definition.mass / p.mass) : Inertia<D>{};
-        p.mass = *definition.mass;
+    if (given.mass) {
+        p.inertia = p.mass > 0 ? p.inertia * (*given.mass / p.mass) : Inertia<D>{};
+        p.mass = *given.mass;
     }
-    if (definition.center_of_mass) p.center = *definition.center_of_mass;
-    if (definition.inertia) p.inertia = *definition.inertia;
+    if (given.center_of_mass) p.center = *given.center_of_mass;
+    if (given.inertia) p.inertia = *given.inertia;
     return p;
 }
 
 }  // namespace
 
 template <int D>
-MassProperties<D> body_mass(const BodyDefinition<D>& definition,
-                            const std::vector<ShapeDefinition<D>>& shapes) {
-    const MassProperties<D> p = resolve<D>(definition, shapes);
-    if (definition.type == BodyType::dynamic && !(p.mass > 0))
+MassProperties<D> body_mass(BodyType type, const MassOverrides<D>& given, ShapesOf<D> shapes) {
+    const MassProperties<D> p = resolve<D>(given, shapes);
+    if (type == BodyType::dynamic && !(p.mass > 0))
         throw Error("mass: a dynamic body needs a mass, or shapes with a density that is not zero");
-    if (definition.type == BodyType::dynamic) require_in(p.mass, 1e-30, 1e30, "mass");
+    if (type == BodyType::dynamic) require_in(p.mass, 1e-30, 1e30, "mass");
     return p;
 }
 
 template <int D>
 void WorldState<D>::update_mass(std::uint32_t body) {
     const BodyInfo<D>& info = infos[body];
-    std::vector<ShapeDefinition<D>> definitions;
+    std::vector<const ShapeDefinition<D>*> definitions;
     double measured = 0;
     for (const ShapeId<D>& id : info.shapes) {
-        definitions.push_back(shapes[id.index].definition);
-        measured += measure<D>(definitions.back().geometry);
+        definitions.push_back(shapes[id.index].definition.get());
+        measured += measure<D>(definitions.back()->geometry);
     }
-    const MassProperties<D> p = resolve<D>(info.definition, definitions);
+    const MassProperties<D> p = resolve<D>(overrides_of(info), definitions);
     BodyMass<D>& m = masses[body];
     const Vec<D> moved_center = rotate(states[body].rotation, p.center - m.center);
     states[body].position += moved_center;
@@ -98,9 +104,9 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     m.inverse_inertia = dynamic && p.inertia != Inertia<D>{} ? inverse(p.inertia) : Inertia<D>{};
     m.isotropic = is_isotropic(p.inertia);
     m.radius = 0;
-    m.core_radius = info.shapes.empty() ? 0 : shapes[info.shapes[0].index].core.radius;
+    m.core_radius = info.shapes.empty() ? 0 : shapes[info.shapes[0].index].core_radius;
     for (const ShapeId<D>& id : info.shapes) {
-        m.core_radius = std::min(m.core_radius, shapes[id.index].core.radius);
+        m.core_radius = std::min(m.core_radius, shapes[id.index].core_radius);
         if (shapes[id.index].shape.kind == ShapeKind::plane) continue;
         const Aabb<D> box = bounds(shapes[id.index].shape, Transform<D>{});
         Vec<D> far;
@@ -109,8 +115,8 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     }
 }
 
-template MassProperties<2> body_mass(const BodyDefinition<2>&, const std::vector<ShapeDefinition<2>>&);
-template MassProperties<3> body_mass(const BodyDefinition<3>&, const std::vector<ShapeDefinition<3>>&);
+template MassProperties<2> body_mass(BodyType, const MassOverrides<2>&, ShapesOf<2>);
+template MassProperties<3> body_mass(BodyType, const MassOverrides<3>&, ShapesOf<3>);
 template void WorldState<2>::update_mass(std::uint32_t);
 template void WorldState<3>::update_mass(std::uint32_t);
 

@@ -126,14 +126,14 @@ void WorldState<D>::set_surface(ContactRecord<D>& c) const {
         const ShapeRecord<D>& s = shapes[shape];
         const Material* own =
             s.shape.kind == ShapeKind::terrain ? s.shape.terrain->material(c.facet) : nullptr;
-        return own ? *own : s.definition.material;
+        return own ? *own : s.definition->material;
     };
     const Material &a = material(c.shape_a), &b = material(c.shape_b);
     c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
     c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
     const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
     const auto is_special = [&](std::uint32_t shape) {
-        const ShapeDefinition<D>& s = shapes[shape].definition;
+        const ShapeDefinition<D>& s = *shapes[shape].definition;
         return s.one_way || s.surface_velocity != Vec<D>{};
     };
     c.special = is_special(c.shape_a) || is_special(c.shape_b);

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "carom/world.hpp"
@@ -28,9 +31,10 @@ namespace carom::detail {
 template <int D>
 struct ShapeRecord {
     Shape<D> shape;
-    ShapeDefinition<D> definition;
+    std::shared_ptr<const ShapeDefinition<D>> definition;  ///< shapes that are alike share one
     std::uint32_t body = 0;
-    Shape<D> core{};                    ///< of a convex shape: a ball half as large as fits into it
+    Vec<D> core{};  ///< of a convex shape: the middle of a ball half as large as fits into it
+    double core_radius = 0;
     std::int32_t leaf = Tree<D>::none;  ///< in the tree that its body says
 };
 
@@ -75,6 +79,18 @@ struct SensorPair {
     bool placed_anew = true;  ///< one of the two was moved by the user, or the pair is new
 };
 
+/// The body that was added last, checked and worked out. Who adds many that are alike, but for place, motion
+/// and name, pays for one.
+template <int D>
+struct Blueprint {
+    BodyDefinition<D> definition;  ///< without its shapes
+    std::vector<ShapeRecord<D>> shapes;
+    BodyMass<D> mass;
+    bool made = false;
+
+    bool serves(const BodyDefinition<D>& wanted) const;
+};
+
 /// What happened: filled by a step and by what is removed before it.
 template <int D>
 struct EventBuffers {
@@ -112,8 +128,9 @@ struct WorldState {
     std::vector<BodyMass<D>> masses;
     std::vector<BodyType> types;
     std::vector<BodyInfo<D>> infos;
-    std::vector<Load<D>> applied;        ///< the user's forces for the next step
-    std::vector<BodyId<D>> body_ids;     ///< all that are in use, oldest first
+    std::vector<Load<D>> applied;     ///< the user's forces for the next step
+    std::vector<BodyId<D>> body_ids;  ///< all that are in use, oldest first
+    Blueprint<D> blueprint;
     std::vector<std::uint32_t> movable;  ///< indices of the dynamic and kinematic ones, oldest first
 
     // Shapes, by index.
@@ -127,6 +144,9 @@ struct WorldState {
     std::vector<std::uint32_t> moved_shapes;   ///< those that have one
     std::vector<std::uint32_t> moving_shapes;  ///< those of the bodies that move in this step
     std::vector<std::int32_t> new_leaves;      ///< leaves of moving shapes with new boxes
+    std::vector<std::uint32_t> unplanted;      ///< shapes that are in no tree yet
+    std::atomic<bool> some_unplanted = false;
+    std::mutex planting;
     Sweep<D> crowd;
 
     Forces<D> forces;
@@ -209,6 +229,8 @@ struct WorldState {
     void insert_leaf(std::uint32_t shape);
     void remove_leaf(std::uint32_t shape);
     void set_box(std::uint32_t shape, const Aabb<D>& box);
+    void plant();
+    void plant_for_queries();
     void mark_moved(std::uint32_t shape);
 
     // pairs.cpp: who is near whom.
@@ -298,13 +320,13 @@ struct WorldState {
     // joints.cpp: what binds bodies.
     void list_active_joints();
     void wake_jointed();
-    void break_joints();
+    void break_joints(double dt);
     void remove_joint(std::uint32_t joint);
     void remove_joints_of(std::uint32_t body);
     std::uint32_t index(JointId<D> joint) const;
     const CouplingRecord<D>* coupling_of(std::uint32_t joint) const;
     JointPose<D> joint_pose(std::uint32_t joint) const { return pose_of<D>(joints[joint], states, masses); }
-    Load<D> joint_load(std::uint32_t joint) const;
+    Load<D> joint_load(std::uint32_t joint, double dt) const;
 
     // queries.cpp: questions between steps.
     bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;

@@ -127,6 +127,7 @@ void WorldState<D>::begin_step(double) {
 
     quarantined.clear();
     list_moving();
+    plant();
 }
 
 /// Brings `awake` up to date. Only who was in it or was roused since can be moving.
@@ -202,7 +203,7 @@ void WorldState<D>::finish_bodies() {
             quarantine(i);
             continue;
         }
-        moved_bodies.push_back({id, infos[i].definition.user_data, frame_of(i)});
+        moved_bodies.push_back({id, infos[i].user_data, frame_of(i)});
     }
 }
 

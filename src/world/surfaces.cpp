@@ -132,7 +132,7 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
 /// How the shape's frame is turned in the world.
 template <int D>
 Rotation<D> WorldState<D>::axes_of(std::uint32_t shape) const {
-    return states[shapes[shape].body].rotation * normalized(shapes[shape].definition.rotation);
+    return states[shapes[shape].body].rotation * normalized(shapes[shape].definition->rotation);
 }
 
 /// A one-way shape lets pass what was not on its open side when it came near, until it has gone.
@@ -141,7 +141,7 @@ void WorldState<D>::pass_one_way(ContactRecord<D>& c, bool was_near) const {
     if (c.count == 0) c.passing = false;
     if (c.count == 0) return;
     const auto blocks = [&](std::uint32_t shape, double towards_other) {
-        const auto& direction = shapes[shape].definition.one_way;
+        const auto& direction = shapes[shape].definition->one_way;
         if (!direction) return true;
         const Vec<D> open = rotate(axes_of(shape), *direction);
         constexpr double least_cosine = 0.1;
@@ -155,7 +155,7 @@ void WorldState<D>::pass_one_way(ContactRecord<D>& c, bool was_near) const {
 template <int D>
 void WorldState<D>::drag_along(ContactRecord<D>& c) const {
     const auto surface = [&](std::uint32_t shape) {
-        return rotate(axes_of(shape), shapes[shape].definition.surface_velocity);
+        return rotate(axes_of(shape), shapes[shape].definition->surface_velocity);
     };
     const Vec<D> normal = narrow<double>(c.normal);
     const Vec<D> relative_velocity = surface(c.shape_b) - surface(c.shape_a);

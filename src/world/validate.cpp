@@ -30,11 +30,16 @@ void require_place_for(const Shape<D>& shape, BodyType type) {
 }
 
 template <int D>
-std::vector<Shape<D>> validate(const BodyDefinition<D>& b) {
+void validate_motion(const BodyDefinition<D>& b) {
     require_finite(b.position, "position");
     require_unit(b.rotation, "rotation");
     require_finite(b.velocity, "velocity");
     require_finite(b.angular_velocity, "angular_velocity");
+}
+
+template <int D>
+std::vector<Shape<D>> validate(const BodyDefinition<D>& b) {
+    validate_motion(b);
     if (b.mass) require_positive(*b.mass, "mass");
     if (b.center_of_mass) require_finite(*b.center_of_mass, "center_of_mass");
     if (b.inertia) validate_inertia(*b.inertia);
@@ -42,13 +47,15 @@ std::vector<Shape<D>> validate(const BodyDefinition<D>& b) {
     require_not_negative(b.linear_damping, "linear_damping");
     require_not_negative(b.angular_damping, "angular_damping");
     std::vector<Shape<D>> shapes;
+    std::vector<const ShapeDefinition<D>*> definitions;
     for (std::size_t i = 0; i < b.shapes.size(); ++i) {
         within("shapes[" + std::to_string(i) + "].", [&] {
             shapes.push_back(make_shape(b.shapes[i]));
             require_place_for(shapes.back(), b.type);
         });
     }
-    body_mass<D>(b, b.shapes);
+    for (const ShapeDefinition<D>& s : b.shapes) definitions.push_back(&s);
+    body_mass<D>(b.type, overrides_of(b), definitions);
     return shapes;
 }
 
@@ -88,6 +95,8 @@ void validate(const ForceDefinition<D>& f) {
 
 template void require_place_for(const Shape<2>&, BodyType);
 template void require_place_for(const Shape<3>&, BodyType);
+template void validate_motion(const BodyDefinition<2>&);
+template void validate_motion(const BodyDefinition<3>&);
 template void validate(const WorldDefinition<2>&);
 template void validate(const WorldDefinition<3>&);
 template std::vector<Shape<2>> validate(const BodyDefinition<2>&);

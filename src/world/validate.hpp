@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "carom/error.hpp"
 #include "carom/forces.hpp"
 #include "carom/world.hpp"
+#include "dynamics/body.hpp"
 #include "geometry/shape.hpp"
 
 namespace carom::detail {
@@ -24,6 +26,9 @@ auto within(const std::string& prefix, Work&& work) {
 /// Each throws `Error` that names the field.
 template <int D>
 void validate(const WorldDefinition<D>& definition);
+/// Only what says where the body is and how it moves.
+template <int D>
+void validate_motion(const BodyDefinition<D>& definition);
 /// Returns the shapes, made ready.
 template <int D>
 std::vector<Shape<D>> validate(const BodyDefinition<D>& definition);
@@ -38,10 +43,22 @@ void require_place_for(const Shape<D>& shape, BodyType type);
 void validate_inertia(double inertia);
 void validate_inertia(const Symmetric3<double>& inertia);
 
+/// The shapes of a body.
+template <int D>
+using ShapesOf = std::span<const ShapeDefinition<D>* const>;
+
 /// Mass properties of a body with these shapes, overrides included. Throws `Error` when a dynamic body would
 /// have no mass.
 template <int D>
-MassProperties<D> body_mass(const BodyDefinition<D>& definition,
-                            const std::vector<ShapeDefinition<D>>& shapes);
+MassProperties<D> body_mass(BodyType type, const MassOverrides<D>& given, ShapesOf<D> shapes);
+
+template <int D>
+MassOverrides<D> overrides_of(const BodyDefinition<D>& definition) {
+    return {definition.mass, definition.center_of_mass, definition.inertia};
+}
+template <int D>
+MassOverrides<D> overrides_of(const BodyInfo<D>& info) {
+    return info.overrides ? *info.overrides : MassOverrides<D>{};
+}
 
 }  // namespace carom::detail

@@ -1,0 +1,254 @@
+#include <algorithm>
+
+#include "math/check.hpp"
+#include "world/state.hpp"
+#include "world/validate.hpp"
+
+// How bodies and shapes come into a world, and how shapes change. Everything is checked before anything is
+// changed.
+
+namespace carom {
+
+using namespace detail;
+
+namespace {
+
+template <int D>
+std::uint32_t new_body_place(WorldState<D>& w) {
+    const std::uint32_t i = w.body_slots.acquire();
+    if (i == w.states.size()) {
+        w.states.emplace_back();
+        w.masses.emplace_back();
+        w.types.emplace_back();
+        w.infos.emplace_back();
+        w.applied.emplace_back();
+        w.tree_of.push_back(of_fixed);
+        w.moving.push_back(stands_still);
+        w.place.emplace_back();
+        w.loads.emplace_back();
+        w.varies.emplace_back();
+        w.fixed_contacts_of.push_back(0);
+    }
+    w.states[i] = {};
+    w.masses[i] = {};
+    w.infos[i] = {};
+    w.applied[i] = {};
+    return i;
+}
+
+/// As long as none of these has come to the other side of a wall, nothing has passed through.
+template <int D>
+Shape<D> core_of(const Shape<D>& shape) {
+    if (shape.kind == ShapeKind::plane || shape.kind == ShapeKind::terrain) return {};
+    Shape<D> ball = inner_ball(shape);
+    ball.radius *= 0.5;
+    return ball;
+}
+
+/// The shape, without the body that it is on.
+template <int D>
+ShapeRecord<D> recorded(const ShapeDefinition<D>& definition, Shape<D> shape) {
+    const Shape<D> core = core_of(shape);
+    return {std::move(shape), std::make_shared<const ShapeDefinition<D>>(definition), 0, core.a, core.radius};
+}
+
+template <int D>
+void set_record(WorldState<D>& w, std::uint32_t i, std::uint32_t body, const ShapeRecord<D>& record) {
+    w.shapes[i] = record;
+    w.shapes[i].body = body;
+    const ShapeDefinition<D>& s = *record.definition;
+    w.company[i] = {s.filter.category, s.filter.mask, body,
+                    s.filter.group,    s.sensor,      record.shape.kind == ShapeKind::terrain};
+}
+
+template <int D>
+ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeRecord<D>& record) {
+    const std::uint32_t i = w.shape_slots.acquire();
+    if (i == w.shapes.size()) {
+        w.shapes.emplace_back();
+        w.company.emplace_back();
+        w.fat_boxes.emplace_back();
+        w.has_new_box.push_back(0);
+        w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
+    }
+    set_record(w, i, body, record);
+    const auto id = w.shape_slots.template id<ShapeId<D>>(i);
+    w.infos[body].shapes.push_back(id);
+    return id;
+}
+
+template <int D>
+void drop_shape(WorldState<D>& w, ShapeId<D> id) {
+    w.remove_contacts_of_shape(id.index);
+    w.remove_visits_of(id.index);
+    w.remove_leaf(id.index);
+    w.shape_slots.release(id.index);
+}
+
+}  // namespace
+
+namespace detail {
+
+template <int D>
+bool Blueprint<D>::serves(const BodyDefinition<D>& b) const {
+    const auto same_shape = [](const ShapeDefinition<D>& wanted, const ShapeRecord<D>& one) {
+        return wanted == *one.definition;
+    };
+    return made && b.type == definition.type && b.mass == definition.mass &&
+           b.center_of_mass == definition.center_of_mass && b.inertia == definition.inertia &&
+           b.gravity_scale == definition.gravity_scale && b.linear_damping == definition.linear_damping &&
+           b.angular_damping == definition.angular_damping && b.locks == definition.locks &&
+           std::ranges::equal(b.shapes, shapes, same_shape);
+}
+
+}  // namespace detail
+
+namespace {
+
+/// Works out what bodies like this one have in common; the body that is added stands at `i`.
+template <int D>
+void draw_blueprint(WorldState<D>& w, const BodyDefinition<D>& definition, std::vector<Shape<D>> shapes) {
+    Blueprint<D>& plan = w.blueprint;
+    plan.made = true;
+    plan.definition = {};
+    plan.definition.type = definition.type;
+    plan.definition.mass = definition.mass;
+    plan.definition.center_of_mass = definition.center_of_mass;
+    plan.definition.inertia = definition.inertia;
+    plan.definition.gravity_scale = definition.gravity_scale;
+    plan.definition.linear_damping = definition.linear_damping;
+    plan.definition.angular_damping = definition.angular_damping;
+    plan.definition.locks = definition.locks;
+    plan.shapes.clear();
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+        plan.shapes.push_back(recorded(definition.shapes[k], std::move(shapes[k])));
+    plan.mass = {};
+    plan.mass.gravity_scale = definition.gravity_scale;
+    plan.mass.linear_damping = definition.linear_damping;
+    plan.mass.angular_damping = definition.angular_damping;
+    plan.mass.locks = definition.locks;
+}
+
+}  // namespace
+
+template <int D>
+BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
+    WorldState<D>& w = *state_;
+    Blueprint<D>& plan = w.blueprint;
+    const bool is_alike = plan.serves(definition);
+    if (is_alike)
+        validate_motion(definition);
+    else
+        draw_blueprint(w, definition, validate(definition));
+    const std::uint32_t i = new_body_place(w);
+    w.types[i] = definition.type;
+    BodyState<D>& s = w.states[i];
+    s.position = definition.position;
+    s.rotation = normalized(definition.rotation);
+    BodyInfo<D>& info = w.infos[i];
+    info.can_sleep = definition.can_sleep;
+    info.bullet = definition.bullet;
+    w.bullets += definition.bullet;
+    info.name = definition.name;
+    info.user_data = definition.user_data;
+    if (definition.mass || definition.center_of_mass || definition.inertia)
+        info.overrides = std::make_shared<const MassOverrides<D>>(overrides_of(definition));
+    for (const ShapeRecord<D>& record : plan.shapes) put_shape(w, i, record);
+    BodyMass<D>& m = w.masses[i];
+    m = plan.mass;
+    if (is_alike) {
+        s.position += rotate(s.rotation, m.center);  // from the frame to the centre of mass
+    } else {
+        w.update_mass(i);  // does the same
+        plan.mass = m;
+    }
+    w.some_locked |= definition.locks != Locks{};
+    // What has much data is not kept beyond its body.
+    if (std::ranges::any_of(plan.shapes, [](const auto& r) { return r.shape.kind == ShapeKind::terrain; }))
+        plan = {};
+    if (definition.type != BodyType::fixed) {
+        s.velocity = free_components<D>(m.locks, definition.velocity);
+        s.angular_velocity = free_spin<D>(m.locks, definition.angular_velocity);
+        w.movable.push_back(i);
+        w.roused.push_back(i);
+    }
+    w.tree_of[i] = w.tree_for(i);
+    for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
+    const auto id = w.body_slots.template id<BodyId<D>>(i);
+    w.body_ids.push_back(id);
+    return id;
+}
+
+template <int D>
+ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definition) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(body);
+    Shape<D> shape = make_shape(definition);
+    require_place_for(shape, w.types[i]);
+    const ShapeId<D> id = put_shape(w, i, recorded(definition, std::move(shape)));
+    w.update_mass(i);
+    w.forget_manifolds_of(i);
+    w.insert_leaf(id.index);
+    w.wake(i);
+    return id;
+}
+
+template <int D>
+void World<D>::remove_shape(ShapeId<D> shape) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t body = w.shapes[w.index(shape)].body;
+    std::vector<const ShapeDefinition<D>*> rest;
+    for (const ShapeId<D>& id : w.infos[body].shapes) {
+        if (id != shape) rest.push_back(w.shapes[id.index].definition.get());
+    }
+    body_mass<D>(w.types[body], overrides_of(w.infos[body]), rest);
+    w.wake_neighbours(body);
+    w.wake_islands();
+    drop_shape(w, shape);
+    std::erase(w.infos[body].shapes, shape);
+    w.update_mass(body);
+    w.forget_manifolds_of(body);
+}
+
+template <int D>
+void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition) {
+    WorldState<D>& w = *state_;
+    const std::uint32_t i = w.index(shape), body = w.shapes[i].body;
+    Shape<D> made = make_shape(definition);
+    require_place_for(made, w.types[body]);
+    std::vector<const ShapeDefinition<D>*> all;
+    for (const ShapeId<D>& id : w.infos[body].shapes)
+        all.push_back(id == shape ? &definition : w.shapes[id.index].definition.get());
+    body_mass<D>(w.types[body], overrides_of(w.infos[body]), all);
+
+    const Filter &before = w.shapes[i].definition->filter, &now = definition.filter;
+    // Contacts with a terrain name its facets, which are others now.
+    const bool is_ground = made.kind == ShapeKind::terrain || w.shapes[i].shape.kind == ShapeKind::terrain;
+    const bool same_company = !is_ground && w.shapes[i].definition->sensor == definition.sensor &&
+                              before.category == now.category && before.mask == now.mask &&
+                              before.group == now.group;
+    w.wake_neighbours(body);
+    w.wake_islands();
+    if (!same_company) {
+        w.remove_contacts_of_shape(i);
+        w.remove_visits_of(i);
+    }
+    w.remove_leaf(i);
+    set_record(w, i, body, recorded(definition, std::move(made)));
+    w.update_mass(body);
+    w.forget_manifolds_of(body);
+    w.insert_leaf(i);
+    w.each_contact_of_shape(i, [&](std::uint32_t contact) { w.set_surface(w.contacts[contact]); });
+    w.place_visits_anew(i);
+}
+
+#define CAROM_INSTANTIATE(D)                                                       \
+    template BodyId<D> World<D>::add_body(const BodyDefinition<D>&);               \
+    template ShapeId<D> World<D>::add_shape(BodyId<D>, const ShapeDefinition<D>&); \
+    template void World<D>::remove_shape(ShapeId<D>);                              \
+    template void World<D>::set_shape(ShapeId<D>, const ShapeDefinition<D>&);
+CAROM_INSTANTIATE(2)
+CAROM_INSTANTIATE(3)
+#undef CAROM_INSTANTIATE
+
+}  // namespace carom
