@@ -67,6 +67,33 @@ Polyhedron box_core(const Transform3& placed, const Vec3& half) {
     return box;
 }
 
+/// Worlds are full of equal shapes, mostly added one after the other: those share what they are made of, as
+/// long as one of them exists, and keep it in the cache. `points` and `placed` say what `make` makes.
+template <int D, class Make>
+std::shared_ptr<const Polytope<D>> shared_core(std::span<const Vec<D>> points, const Transform<D>& placed,
+                                               const Make& make) {
+    struct Recent {
+        std::vector<Vec<D>> points;
+        Transform<D> placed;
+        std::weak_ptr<const Polytope<D>> core;
+    };
+    thread_local std::array<Recent, 8> recent;
+    thread_local std::size_t oldest = 0;
+    const auto same_bits = [](const auto& a, const auto& b) {
+        return a.size_bytes() == b.size_bytes() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+    };
+    for (const Recent& r : recent) {
+        if (!same_bits(std::span(r.points), points) ||
+            !same_bits(std::span(&r.placed, 1), std::span(&placed, 1)))
+            continue;
+        if (auto core = r.core.lock()) return core;
+    }
+    const auto core = std::make_shared<const Polytope<D>>(make());
+    recent[oldest] = {{points.begin(), points.end()}, placed, core};
+    oldest = (oldest + 1) % recent.size();
+    return core;
+}
+
 template <int D>
 void fill(Shape<D>& shape, const Ball& ball, const Transform<D>& placed) {
     require_length(ball.radius, "radius");
@@ -102,7 +129,7 @@ void fill(Shape<D>& shape, const Box<D>& box, const Transform<D>& placed) {
     shape.a = placed.position;
     for (int i = 0; i < D; ++i) shape.b[i] = 0.5 * box.size[i] - shape.radius;
     shape.rotation = placed.rotation;
-    shape.core = std::make_shared<const Polytope<D>>(box_core(placed, shape.b));
+    shape.core = shared_core<D>(std::span(&shape.b, 1), placed, [&] { return box_core(placed, shape.b); });
 }
 
 template <int D>
@@ -125,40 +152,14 @@ Polytope<D> hull_core(const std::vector<Vec<D>>& points, const Transform<D>& pla
     return core;
 }
 
-/// Worlds are full of equal hulls, mostly added one after the other: those share what they are made of, as
-/// long as one of them exists.
-template <int D>
-std::shared_ptr<const Polytope<D>> shared_hull_core(const std::vector<Vec<D>>& points,
-                                                    const Transform<D>& placed) {
-    struct Recent {
-        std::vector<Vec<D>> points;
-        Transform<D> placed;
-        std::weak_ptr<const Polytope<D>> core;
-    };
-    thread_local std::array<Recent, 8> recent;
-    thread_local std::size_t oldest = 0;
-    const auto same_bits = [](const auto& a, const auto& b) {
-        return a.size_bytes() == b.size_bytes() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-    };
-    for (const Recent& r : recent) {
-        auto core = r.core.lock();
-        if (core && same_bits(std::span(r.points), std::span(points)) &&
-            same_bits(std::span(&r.placed, 1), std::span(&placed, 1)))
-            return core;
-    }
-    const auto core = std::make_shared<const Polytope<D>>(hull_core<D>(points, placed));
-    recent[oldest] = {points, placed, core};
-    oldest = (oldest + 1) % recent.size();
-    return core;
-}
-
 template <int D>
 void fill(Shape<D>& shape, const Hull<D>& hull, const Transform<D>& placed) {
     require_not_negative(hull.rounding, "rounding");
     require_in(hull.rounding, 0, longest_length, "rounding");
     shape.kind = ShapeKind::hull;
     shape.radius = hull.rounding;
-    shape.core = shared_hull_core<D>(hull.points, placed);
+    shape.core =
+        shared_core<D>(std::span(hull.points), placed, [&] { return hull_core<D>(hull.points, placed); });
 }
 
 template <int D>

@@ -124,33 +124,44 @@ void set_overlapping(Proximity& result, const Outline& front, const Facing& faci
 
 }  // namespace
 
-Outline::Outline(const Shape<2>& shape, const Transform<2>& placed) : placed_(placed), radius_(shape.radius) {
+Outline::Outline(const Shape<2>& shape, const Transform<2>& placed)
+    : radius_(shape.radius), position_(placed.position) {
+    Vec2 *corners = few_corners_.data(), *normals = few_normals_.data();
     if (shape.core) {
-        corners_ = shape.core->vertices;
-        normals_ = shape.core->normals;
-        return;
+        const std::vector<Vec2>&vertices = shape.core->vertices, &edges = shape.core->normals;
+        count_ = int(vertices.size());
+        if (count_ > room) {
+            many_.resize(2 * vertices.size());
+            corners = many_.data();
+            normals = corners + count_;
+        }
+        for (int i = 0; i < count_; ++i) {
+            corners[i] = apply(placed, vertices[i]);
+            normals[i] = rotate(placed.rotation, edges[i]);
+        }
+    } else {
+        const Vec2 along = normalized(shape.b - shape.a);
+        count_ = shape.kind == ShapeKind::ball || length_squared(along) == 0 ? 1 : 2;
+        corners[0] = apply(placed, shape.a);
+        corners[1] = apply(placed, shape.b);
+        normals[0] = rotate(placed.rotation, {along.y, -along.x});
+        normals[1] = -normals[0];
     }
-    few_corners_ = {shape.a, shape.b};
-    const Vec2 along = normalized(shape.b - shape.a);
-    few_normals_ = {Vec2{along.y, -along.x}, Vec2{-along.y, along.x}};
-    const bool point = shape.kind == ShapeKind::ball || length_squared(along) == 0;
-    corners_ = std::span(few_corners_).first(point ? 1 : 2);
-    normals_ = few_normals_;
+    corners_ = corners;
+    normals_ = normals;
 }
 
 int Outline::climb(const Vec2& direction, int start) const {
-    const Vec2 local = unrotate(placed_.rotation, direction);
     int best = start;
-    for (int i = next(start); i != start && dot(local, corners_[i] - corners_[best]) > 0; i = next(i))
+    for (int i = next(start); i != start && dot(direction, corners_[i] - corners_[best]) > 0; i = next(i))
         best = i;
     return best;
 }
 
 int Outline::furthest(const Vec2& direction) const {
-    const Vec2 local = unrotate(placed_.rotation, direction);
     int best = 0;
-    for (int i = 1; i < count(); ++i)
-        if (dot(local, corners_[i] - corners_[best]) > 0) best = i;
+    for (int i = 1; i < count_; ++i)
+        if (dot(direction, corners_[i] - corners_[best]) > 0) best = i;
     return best;
 }
 

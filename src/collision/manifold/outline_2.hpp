@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <vector>
 
 #include "collision/manifold.hpp"
 
@@ -16,17 +16,17 @@ class Outline {
     Outline(const Outline&) = delete;
     Outline& operator=(const Outline&) = delete;
 
-    int count() const { return int(corners_.size()); }
+    int count() const { return count_; }
     /// There are as many edges as corners, but none where there is one corner only.
-    bool has_edges() const { return corners_.size() > 1; }
+    bool has_edges() const { return count_ > 1; }
     int next(int i) const { return i + 1 < count() ? i + 1 : 0; }
     int previous(int i) const { return i > 0 ? i - 1 : count() - 1; }
 
-    Vec2 corner(int i) const { return apply(placed_, corners_[i]); }
+    const Vec2& corner(int i) const { return corners_[i]; }
     /// The size of the numbers that the place of a corner comes from.
-    double magnitude(int i) const { return length(corners_[i]) + length(placed_.position); }
+    double magnitude(int i) const { return length(corners_[i]) + 2 * length(position_); }
     /// Out of the edge from corner i to the next.
-    Vec2 normal(int i) const { return rotate(placed_.rotation, normals_[i]); }
+    const Vec2& normal(int i) const { return normals_[i]; }
     /// By how much the shape is larger than its core.
     double radius() const { return radius_; }
 
@@ -37,10 +37,14 @@ class Outline {
     int furthest(const Vec2& direction) const;
 
   private:
-    std::span<const Vec2> corners_, normals_;
-    std::array<Vec2, 2> few_corners_, few_normals_;
-    Transform<2> placed_;
+    static constexpr int room = 8;
+
+    int count_;
     double radius_;
+    Vec2 position_;  ///< of the frame that the corners come from
+    const Vec2 *corners_, *normals_;
+    std::array<Vec2, room> few_corners_, few_normals_;
+    std::vector<Vec2> many_;  ///< corners, then normals
 };
 
 /// An edge of one outline, the corner of the other that is furthest behind it, and how far that is in front
