@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "io/chrome_trace.hpp"
 #include "io/output_file.hpp"
 #include "io/progress.hpp"
 #include "io/record.hpp"
@@ -21,7 +22,7 @@ struct RunOptions {
     std::string scene;
     int steps = 600;
     int threads = 1;
-    std::string trace, replay;
+    std::string trace, replay, profile;
     std::vector<std::string> trace_bodies;
     bool json = false, quiet = false;
 };
@@ -33,6 +34,7 @@ class Outputs {
     Outputs(const RunOptions& options, const io::Scene& scene, const io::SceneWorld<D>& built) {
         // Files are opened before the run, so that a path that cannot be written is known at once.
         if (!options.trace.empty()) trace_.emplace(options.trace, built, options.trace_bodies);
+        if (!options.profile.empty()) profile_.emplace(options.profile);
         if (options.replay.empty()) return;
         replay_file_.emplace(options.replay, "replay");
         recorder_.emplace(scene, built);
@@ -41,10 +43,12 @@ class Outputs {
     void take(const World<D>& world) {
         if (trace_) trace_->write_step(world);
         if (recorder_) recorder_->record_frame(world);
+        if (profile_ && world.steps() > 0) profile_->write_step(world.profile());
     }
 
     void finish() {
         if (trace_) trace_->finish();
+        if (profile_) profile_->finish();
         if (!recorder_) return;
         replay_file_->write(io::replay_html(recorder_->replay(), io::replay_template()));
         replay_file_->finish();
@@ -54,6 +58,7 @@ class Outputs {
     std::optional<io::Trace<D>> trace_;
     std::optional<io::OutputFile> replay_file_;
     std::optional<io::Recorder<D>> recorder_;
+    std::optional<io::ChromeTrace> profile_;
 };
 
 template <int D>
@@ -70,6 +75,7 @@ io::RunSummary simulate(const RunOptions& options, const io::Scene& scene) {
     io::SceneWorld<D> built = io::build<D>(scene);
     World<D>& world = built.world;
     if (options.threads > 1) world.set_scheduler(make_thread_pool(options.threads));
+    world.set_profiling(!options.profile.empty());
     Outputs<D> outputs(options, scene, built);
 
     io::RunSummary summary{scene.name, D};
@@ -136,6 +142,10 @@ void add_run(CLI::App& program, int& status) {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->needs("--trace");
+    command
+        ->add_option("--profile", options->profile,
+                     "Write what the stages of each step took to FILE, for ui.perfetto.dev")
+        ->type_name("FILE.json");
     command->add_option("--replay", options->replay, "Write a page to FILE that plays the run in a browser")
         ->type_name("FILE.html");
     command->add_flag("--json", options->json, "Print the summary as JSON");

@@ -11,6 +11,8 @@
 #include "carom/collide.hpp"
 #include "carom/events.hpp"
 #include "carom/forces.hpp"
+#include "carom/joints.hpp"
+#include "carom/profile.hpp"
 #include "carom/queries.hpp"
 #include "carom/scheduler.hpp"
 
@@ -122,10 +124,15 @@ class World {
     /// at first and with null, the thread that calls `step`. Worlds with little to do stay on that one
     /// anyway.
     void set_scheduler(std::shared_ptr<Scheduler> scheduler);
+    /// Whether steps note what their stages take; off at first. It changes nothing but the time, by less than
+    /// a microsecond a step.
+    void set_profiling(bool on);
+    /// What the last step took; empty unless it ran with profiling on. Good until the next step.
+    const StepProfile& profile() const;
 
     /// Adds a body with its shapes.
     BodyId<D> add_body(const BodyDefinition<D>& definition);
-    /// Removes a body, its shapes, and the force generators that name it.
+    /// Removes a body, its shapes, its joints, and the force generators that name it.
     void remove_body(BodyId<D> body);
     /// Puts one more shape on a body; its mass properties follow unless they were overridden.
     ShapeId<D> add_shape(BodyId<D> body, const ShapeDefinition<D>& definition);
@@ -140,10 +147,28 @@ class World {
     ForceId<D> add_force(const ForceDefinition<D>& definition);
     void remove_force(ForceId<D> force);
 
+    /// Adds a joint between bodies as they stand. Unless it says `collide`, they do not touch each other as
+    /// long as it is there.
+    JointId<D> add_joint(const JointDefinition<D>& definition);
+    /// Removes a joint, and the gears and racks that name it.
+    void remove_joint(JointId<D> joint);
+    /// Changes limits, motors, springs, length, friction and ratio to those of `kind`, which has to be of the
+    /// joint's type; anchors and axes stay where they are.
+    void set_joint(JointId<D> joint, const decltype(JointDefinition<D>::kind)& kind);
+    /// The same for the motor (of a wheel: of its spin), the spring or the limits alone.
+    void set_motor(JointId<D> joint, const std::optional<JointMotor>& motor);
+    void set_spring(JointId<D> joint, const std::optional<JointSpring>& spring);
+    void set_limits(JointId<D> joint, const std::optional<JointLimits>& limits);
+    /// Steers a wheel. Only in 3D.
+    void set_steering(JointId<D> joint, const std::optional<JointMotor>& steering) requires(D == 3);
+    /// Moves the point to which a `TargetJoint` drags, in the world.
+    void set_target(JointId<D> joint, const Vec<D>& target);
+
     /// Does the handle name something that is there?
     bool contains(BodyId<D> body) const;
     bool contains(ShapeId<D> shape) const;
     bool contains(ForceId<D> force) const;
+    bool contains(JointId<D> joint) const;
 
     /// Moves time on by `dt` seconds (positive, at most 1).
     void step(double dt);
@@ -214,6 +239,27 @@ class World {
     std::span<const SensorEnd<D>> sensor_ends() const;
     /// The shapes that overlapped the sensor at the end of the last step, in the order of their places.
     std::vector<ShapeId<D>> inside(ShapeId<D> sensor) const;
+    /// All joints, in the order in which they were added.
+    std::span<const JointId<D>> joints() const;
+    /// A joint as it was defined, with what was set since.
+    const JointDefinition<D>& joint(JointId<D> joint) const;
+    /// Its two anchors in the world; those of a gear or rack are the ones of its joints' bodies b.
+    std::array<Vec<D>, 2> anchors(JointId<D> joint) const;
+    /// Its coordinate (see the types): rad or m. Of a wheel the travel of the suspension.
+    double coordinate(JointId<D> joint) const;
+    /// The rate of that, rad/s or m/s.
+    double coordinate_speed(JointId<D> joint) const;
+    /// By how much the anchors, and the angles, differ from what the joint wants, m and rad. Springs want
+    /// nothing.
+    double linear_error(JointId<D> joint) const;
+    double angular_error(JointId<D> joint) const;
+    /// Force on b, and torque on b about its anchor, at the end of the last step, N and N·m. Of a pulley,
+    /// gear or rack the tension, or the torque or force on body b of its second joint.
+    Vec<D> joint_force(JointId<D> joint) const;
+    Angular<D> joint_torque(JointId<D> joint) const;
+    /// The joints that broke in the last step.
+    std::span<const JointBreak<D>> joint_breaks() const;
+
     /// Bodies whose state turned non-finite in the last step: they were put back to their last finite state
     /// and disabled, and the rest goes on.
     std::span<const BodyId<D>> quarantined() const;

@@ -21,6 +21,11 @@ template <int D>
 Manifold<D> collide_facet(const Shape<D>& convex, const Facet<D>& facet, const Transform<D>& placed,
                           double reach, const Vec<D>& axis = {});
 
+/// The gap between the facet and a shape along `axis` (see `gap_along`).
+template <int D>
+double gap_along(const Shape<D>& convex, const Facet<D>& facet, const Transform<D>& placed,
+                 const Vec<D>& axis);
+
 /// Gap or depth of a shape and one facet (see `separate_shapes`), and the direction from the facet to the
 /// shape. Nothing when the facet does not meet the shape, however near it may be.
 template <int D>

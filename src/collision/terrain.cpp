@@ -42,6 +42,17 @@ std::optional<NearestFacet<D>> nearest_facet(const Shape<D>& convex, const Terra
 }  // namespace
 
 template <int D>
+double gap_along(const Shape<D>& convex, const Facet<D>& facet, const Transform<D>& placed,
+                 const Vec<D>& axis) {
+    const double size = length(axis);
+    if (size == 0) return -std::numeric_limits<double>::infinity();
+    const Vec<D> lowest = apply(placed, core_support(convex, -unrotate(placed.rotation, axis)));
+    double highest = dot(axis, facet.points[0]);
+    for (int i = 1; i < D; ++i) highest = std::max(highest, dot(axis, facet.points[i]));
+    return (dot(axis, lowest) - highest) / size - core_radius(convex);
+}
+
+template <int D>
 Manifold<D> collide_terrain(const Shape<D>& a, const Shape<D>& terrain, const Transform<D>& terrain_in_a,
                             double reach, const Vec<D>&) {
     const Transform<D> placed = inverse(terrain_in_a);
@@ -65,6 +76,8 @@ template Manifold<2> collide_terrain(const Shape<2>&, const Shape<2>&, const Tra
                                      const Vec2&);
 template Manifold<3> collide_terrain(const Shape<3>&, const Shape<3>&, const Transform<3>&, double,
                                      const Vec3&);
+template double gap_along(const Shape<2>&, const Facet<2>&, const Transform<2>&, const Vec2&);
+template double gap_along(const Shape<3>&, const Facet<3>&, const Transform<3>&, const Vec3&);
 template std::optional<Separation<2>> separate_from_terrain(const Shape<2>&, const Shape<2>&,
                                                             const Transform<2>&);
 template std::optional<Separation<3>> separate_from_terrain(const Shape<3>&, const Shape<3>&,

@@ -33,7 +33,7 @@ class Barrier {
             return;
         }
         for (int turns = 0; round_.load(std::memory_order_acquire) == round; ++turns) {
-            turns < 2000 ? pause_a_little() : std::this_thread::yield();
+            turns < 300 ? pause_a_little() : std::this_thread::yield();
         }
     }
 
@@ -68,6 +68,12 @@ class Crew {
         if (barrier_) barrier_->wait();
     }
     bool is_first() const { return index_ == 0; }
+    /// The first worker does this, while the others wait for it.
+    template <class Work>
+    void alone(Work&& work) const {
+        if (is_first()) work();
+        meet();
+    }
 
   private:
     int index_ = 0, count_ = 1;

@@ -67,6 +67,7 @@ struct BodyInfo {
     Transform<D> rest{};    ///< that place: centre of mass and rotation when the rest began
     std::vector<ShapeId<D>> shapes;
     std::vector<std::uint32_t> ignored;  ///< indices of the bodies with which it does not collide, ascending
+    std::vector<std::uint32_t> jointed;  ///< the same because of joints: once for each
     std::string name;
     std::uint64_t user_data = 0;
     std::shared_ptr<const MassOverrides<D>> overrides;  ///< nothing where there are none

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
@@ -39,6 +41,31 @@ struct Facet {
     }
 };
 
+/// May the facet touch the box? Their bounds overlap, and the box does not lie on one side of the facet's
+/// plane.
+template <int D>
+bool may_touch(const Facet<D>& facet, const Aabb<D>& box) {
+    const Aabb<D> own = facet.bounds();
+    bool overlap = true;  // never, where a corner is not a number
+    for (int i = 0; i < D; ++i) overlap &= own.lower[i] <= box.upper[i] && box.lower[i] <= own.upper[i];
+    if (!overlap) return false;
+    const Vec<D> u = facet.points[1] - facet.points[0];
+    Vec<D> across;
+    if constexpr (D == 2)
+        across = {-u.y, u.x};
+    else
+        across = cross(u, facet.points[2] - facet.points[0]);
+    constexpr double rounding = 1e-14;
+    double height = 0, reach = 0;
+    for (int i = 0; i < D; ++i) {
+        const double middle = 0.5 * (box.lower[i] + box.upper[i]), half = 0.5 * (box.upper[i] - box.lower[i]);
+        const double size = std::fabs(across[i]), p = facet.points[0][i];
+        height += across[i] * (middle - p);
+        reach += size * (half + rounding * (half + std::fabs(middle) + std::fabs(p)));
+    }
+    return !(std::fabs(height) > reach);
+}
+
 template <class Ground>
 constexpr bool is_terrain_type =
     std::is_same_v<Ground, Chain> || std::is_same_v<Ground, Mesh> || std::is_same_v<Ground, HeightField<2>> ||
@@ -67,8 +94,8 @@ class Terrain {
         return &materials_[material_of_[is_grid_ ? facet / HeightGrid<D>::facets_per_cell : facet]];
     }
 
-    /// Calls `visit(index)` for every facet whose own box overlaps `box`. The order depends on the terrain
-    /// and the box alone.
+    /// Calls `visit(index)` for every facet that touches `box`, and for few that do not (see `may_touch`).
+    /// The order depends on the terrain and the box alone.
     template <class Visitor>
     void query(const Aabb<D>& box, Visitor&& visit) const;
 
@@ -108,10 +135,7 @@ template <int D>
 template <class Visitor>
 void Terrain<D>::query(const Aabb<D>& box, Visitor&& visit) const {
     const auto check = [&](std::uint32_t index) {
-        const Aabb<D> own = facet(index).bounds();
-        bool meets = true;  // never, where a corner is not a number
-        for (int i = 0; i < D; ++i) meets &= own.lower[i] <= box.upper[i] && box.lower[i] <= own.upper[i];
-        if (meets) visit(index);
+        if (may_touch(facet(index), box)) visit(index);
     };
     if (!is_grid_)
         tree_.query(box, check);

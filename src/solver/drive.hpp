@@ -68,13 +68,13 @@ CAROM_INLINE void integrate_position(Motion<D, F>& m, F h) {
 }
 
 /// The share of a change of velocity Δ that is steady: what this sub-step has in common with the one before.
-/// It is all of Δ in free fall, sliding and rolling, and nothing in a blow or at rest. From Δ · Δ and Δ ·
-/// Δ(before).
+/// It is all of Δ where Δ has not doubled since, as in free fall, sliding, rolling and swinging, and nothing
+/// in a blow or at rest. From Δ · Δ and Δ · Δ(before).
 template <class F>
 CAROM_INLINE F steady_share(F squared, F with_before) {
     const auto some = squared > F(0);
     const F share = select(some, with_before / select(some, squared, F(1)), F(0));
-    return maximum(minimum(share, F(1)), F(0));
+    return maximum(minimum(F(2) * share, F(1)), F(0));
 }
 
 /// x += h v(new) is first order. With the steady part Δ of the change of velocity, x += h v − ½ h Δ is the

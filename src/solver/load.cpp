@@ -17,12 +17,6 @@ void Solver<D>::make_room() {
 }
 
 template <int D>
-bool Solver<D>::is_loaded(std::uint32_t slot) const {
-    return slot != BodySlots::still && slot < slots_.size() && slots_.body(slot) != BodySlots::none &&
-           touching_[slot] > 0;
-}
-
-template <int D>
 void Solver<D>::set_free_axes(const SolverInput<D>& input) {
     view_.free_axes = nullptr;
     if (!input.some_locked) return;

@@ -87,12 +87,28 @@ void Solver<D>::rename(const ContactRecord<D>& c, std::uint32_t contact) {
 }
 
 template <int D>
+void Solver<D>::mark_jointed(const SolverInput<D>& input) {
+    jointed_.assign(slots_.size(), 0);
+    const auto mark = [&](const JointRecord<D>& joint) {
+        if (joint.body_a != no_body) jointed_[slots_.slot(joint.body_a)] = 1;
+        jointed_[slots_.slot(joint.body_b)] = 1;
+    };
+    for (const std::uint32_t i : input.active_joints) mark(input.joints[i]);
+    for (const std::uint32_t i : input.active_couplings) {
+        for (const JointRecord<D>& end : input.couplings[i].ends) mark(end);
+    }
+    jointed_[BodySlots::still] = 0;
+}
+
+template <int D>
 void Solver<D>::run(const SolverInput<D>& input) {
-    if (count_ == 0) return;
+    mark_jointed(input);
+    if (count_ == 0 && input.active_joints.empty() && input.active_couplings.empty()) return;
     set_lengths(input);
     make_room();
     set_free_axes(input);
-    run_crew(input.scheduler, is_small(), [&](const Crew& crew) { work(input, crew); });
+    const bool alone = is_small() && input.active_joints.size() < 256;
+    run_crew(input.scheduler, alone, [&](const Crew& crew) { work(input, crew); });
 }
 
 /// What each worker does: all of them run through this, and meet where one needs what others did. What is
@@ -100,7 +116,8 @@ void Solver<D>::run(const SolverInput<D>& input) {
 template <int D>
 void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
     load_bodies(input, crew);
-    prepare_contacts(crew);  // and apply the impulses that they have kept
+    crew.alone([&] { joints_.prepare(joint_input(input)); });  // and apply the impulses that they have kept
+    prepare_contacts(crew);                                    // the same
 
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin_warm(bodies, h_); });
     each_share(crew, false, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
@@ -108,14 +125,15 @@ void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
     });
     crew.meet();
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin(bodies, h_); });
-    if (crew.is_first()) {
+    crew.alone([&] {
         note_impacts();
         find_impacts();
-    }
-    crew.meet();
+    });
     step_through(input.substeps, crew);
-    if (crew.is_first()) bounce(input);
-    crew.meet();
+    crew.alone([&] {
+        bounce(input);
+        joints_.store(joint_input(input));
+    });
     store_bodies(input, crew);
 }
 
@@ -123,18 +141,19 @@ template <int D>
 void Solver<D>::step_through(int substeps, const Crew& crew) {
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_velocities(bodies, h_); });
     for (int i = 0; i < substeps; ++i) {
+        crew.alone([&] { joints_.solve(view_); });
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
         });
         each_share(crew, false,
                    [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.find_pushing(span); });
         crew.meet();
-        if (crew.is_first()) {
+        crew.alone([&] {
             some_struck_ = find_struck();
             if (some_struck_) settle_struck<true>();
-        }
-        crew.meet();
+        });
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
+        crew.alone([&] { joints_.relax(view_); });
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.relax(span, view_, sub_);
         });

@@ -15,6 +15,7 @@
 #include "solver/bounce.hpp"
 #include "solver/colours.hpp"
 #include "solver/contact_store.hpp"
+#include "solver/joint_solver.hpp"
 #include "solver/passes.hpp"
 
 namespace carom::detail {
@@ -22,7 +23,7 @@ namespace carom::detail {
 /// One step as the solver sees it.
 template <int D>
 struct SolverInput {
-    std::span<BodyState<D>> states;  ///< of all bodies; those in contact are moved on
+    std::span<BodyState<D>> states;  ///< of all bodies; those in contact or on joints are moved on
     std::span<const BodyMass<D>> masses;
     std::span<const Load<D>> loads;  ///< at the start of the step
     Scheduler* scheduler = nullptr;  ///< or none: then all is done by the calling thread
@@ -30,10 +31,14 @@ struct SolverInput {
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
+    std::span<JointRecord<D>> joints{};              ///< all; impulses are read and written
+    std::span<const std::uint32_t> active_joints{};  ///< indices of those that hold a body which moves freely
+    std::span<CouplingRecord<D>> couplings{};        ///< the same for these
+    std::span<const std::uint32_t> active_couplings{};
 };
 
-/// Moves the bodies that are in contact through one step. It keeps the contacts from step to step, in lanes
-/// and by colour: what does not change is neither loaded nor stored.
+/// Moves the bodies that are in contact or on joints through one step. It keeps the contacts from step to
+/// step, in lanes and by colour: what does not change is neither loaded nor stored.
 template <int D>
 class Solver {
   public:
@@ -59,12 +64,19 @@ class Solver {
     }
     /// Did `follow` find that this body began or ceased to move when it was last called?
     bool changed(std::uint32_t body) const { return slots_.changed(body); }
-    /// Has the body a contact here?
-    bool has_contact(std::uint32_t body) const { return touching_[slots_.slot(body)] > 0; }
+    /// Has the body a contact here, or had it a joint in the last `run`?
+    bool moves(std::uint32_t body) const { return is_loaded(slots_.slot(body)); }
 
     // Contacts, by their number in the world. -----------------------------------------------------------
 
     std::size_t contacts() const { return count_; }
+    std::size_t largest_colour() const {
+        std::size_t most = 0;
+        for (int c = 0; c < Colours::count; ++c) most = std::max(most, sections_[c].contacts.size());
+        return most;
+    }
+    /// How many contacts found no colour.
+    std::size_t without_colour() const { return sections_[Colours::overflow].contacts.size(); }
     /// Takes up a contact of which a body can be pushed. With `cache`, `refresh` carries it along from then
     /// on; without, it is to be written before each step.
     void add(std::uint32_t contact, ContactRecord<D>& record, const ContactCache<D>* cache);
@@ -123,6 +135,7 @@ class Solver {
     // solver.cpp
     const Passes<D>& passes_of(const Section& section) const { return section.contacts.passes(); }
     void set_lengths(const SolverInput<D>& input);
+    void mark_jointed(const SolverInput<D>& input);
     void work(const SolverInput<D>& input, const Crew& crew);
     void step_through(int substeps, const Crew& crew);
     bool is_small() const { return count_ < 256; }  ///< so that it is not worth several workers
@@ -179,11 +192,25 @@ class Solver {
 
     // load.cpp: bodies and contacts made ready for a step, and the bodies' states after it.
     void make_room();
-    bool is_loaded(std::uint32_t slot) const;
+    bool is_loaded(std::uint32_t slot) const {
+        return slot != BodySlots::still && slot < slots_.size() && slots_.body(slot) != BodySlots::none &&
+               (touching_[slot] > 0 || jointed_[slot] != 0);
+    }
     void load_bodies(const SolverInput<D>& input, const Crew& crew);
     void load_body(const SolverInput<D>& input, std::uint32_t slot);
     void set_free_axes(const SolverInput<D>& input);
     void prepare_contacts(const Crew& crew);
+    JointInput<D> joint_input(const SolverInput<D>& input) const {
+        return {input.joints,
+                input.active_joints,
+                input.couplings,
+                input.active_couplings,
+                input.states,
+                input.masses,
+                slots_,
+                view_,
+                input.step / input.substeps};
+    }
     void store_bodies(const SolverInput<D>& input, const Crew& crew) const;
 
     // settle.cpp: contacts that begin.
@@ -210,12 +237,14 @@ class Solver {
 
     BodySlots slots_;
     std::vector<std::uint32_t> touching_ = std::vector<std::uint32_t>(8, 0);  ///< by slot: how many contacts
+    std::vector<std::uint8_t> jointed_;                                       ///< by slot: has it a joint?
     RecordView<D> view_;
     std::vector<float> records_, free_axes_;
     LaneStore<Drive<D, float>> drives_;  ///< by slot
 
     std::size_t count_ = 0;  ///< of contacts
     Colours colours_;
+    JointSolver<D> joints_;
     std::array<Section, Colours::count + 1> sections_;
     std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
     bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`

@@ -30,6 +30,17 @@ void World<D>::set_scheduler(std::shared_ptr<Scheduler> scheduler) {
 }
 
 template <int D>
+void World<D>::set_profiling(bool on) {
+    if (on != state_->profiler.has_value()) on ? void(state_->profiler.emplace()) : state_->profiler.reset();
+}
+
+template <int D>
+const StepProfile& World<D>::profile() const {
+    static const StepProfile none;
+    return state_->profiler ? state_->profiler->profile : none;
+}
+
+template <int D>
 void World<D>::set_gravity(const Vec<D>& gravity) {
     require_finite(gravity, "gravity");
     state_->definition.gravity = gravity;
@@ -43,6 +54,7 @@ void World<D>::remove_body(BodyId<D> body) {
     w.wake_neighbours(i);
     w.wake_islands();
     w.remove_contacts_of(i);
+    w.remove_joints_of(i);
     for (const std::uint32_t other : w.infos[i].ignored) std::erase(w.infos[other].ignored, i);
     for (const ShapeId<D>& shape : w.infos[i].shapes) {
         w.remove_visits_of(shape.index);
@@ -77,13 +89,7 @@ void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
     };
     change(i, k);
     change(k, i);
-    for (const bool on_fixed : {false, true}) {
-        w.each_contact_of(i, on_fixed, [&](std::uint32_t contact) {
-            const ContactRecord<D>& c = w.contacts[contact];
-            if (c.body_a == k || c.body_b == k) w.picked.push_back(contact);
-        });
-    }
-    w.remove_picked_contacts();
+    w.remove_contacts_between(i, k);
     for (const ShapeId<D>& id : w.infos[i].shapes) w.mark_moved(id.index);
 }
 

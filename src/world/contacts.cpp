@@ -76,6 +76,17 @@ void WorldState<D>::remove_contacts_of(std::uint32_t body) {
 }
 
 template <int D>
+void WorldState<D>::remove_contacts_between(std::uint32_t body, std::uint32_t other) {
+    for (const bool on_fixed : {false, true}) {
+        each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
+            const ContactRecord<D>& c = contacts[contact];
+            if (c.body_a == other || c.body_b == other) picked.push_back(contact);
+        });
+    }
+    remove_picked_contacts();
+}
+
+template <int D>
 void WorldState<D>::remove_contacts_of_shape(std::uint32_t shape) {
     each_contact_of_shape(shape, [&](std::uint32_t contact) { picked.push_back(contact); });
     remove_picked_contacts();
@@ -198,19 +209,20 @@ void WorldState<D>::place_contacts() {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                                    \
-    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const; \
-    template void WorldState<D>::add_contact(const PairKey&);                   \
-    template void WorldState<D>::part_from_others();                            \
-    template void WorldState<D>::remove_picked_contacts();                      \
-    template void WorldState<D>::remove_contacts_of(std::uint32_t);             \
-    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);       \
-    template void WorldState<D>::forget_manifolds_of(std::uint32_t);            \
-    template void WorldState<D>::loosen(std::uint32_t);                         \
-    template void WorldState<D>::stop_carrying(std::uint32_t);                  \
-    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;      \
-    template void WorldState<D>::take_loose();                                  \
-    template void WorldState<D>::follow_bodies();                               \
+#define CAROM_INSTANTIATE(D)                                                            \
+    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const;         \
+    template void WorldState<D>::add_contact(const PairKey&);                           \
+    template void WorldState<D>::part_from_others();                                    \
+    template void WorldState<D>::remove_picked_contacts();                              \
+    template void WorldState<D>::remove_contacts_of(std::uint32_t);                     \
+    template void WorldState<D>::remove_contacts_between(std::uint32_t, std::uint32_t); \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);               \
+    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                    \
+    template void WorldState<D>::loosen(std::uint32_t);                                 \
+    template void WorldState<D>::stop_carrying(std::uint32_t);                          \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;              \
+    template void WorldState<D>::take_loose();                                          \
+    template void WorldState<D>::follow_bodies();                                       \
     template void WorldState<D>::place_contacts();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

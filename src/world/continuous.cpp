@@ -250,7 +250,7 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, const ContactCache<D>& cache
         b = coasted(sb, mb, definition.gravity, elapsed);
         const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
         const bool last = i + 1 == most_advances;
-        double distance = gap_along(shape_a, shape_b, b_in_a, axis);
+        double distance = least_gap_between<D>(shape_a, shape_b, c.facet, b_in_a, axis);
         if (distance <= near || last) {
             const auto gap = gap_between<D>(shape_a, shape_b, c.facet, b_in_a);
             if (!gap) return;

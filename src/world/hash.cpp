@@ -137,8 +137,18 @@ struct Folder {
     }
     template <int D>
     void operator()(const ContactCache<D>& c) {
-        all(c.pose.position, c.pose.rotation, c.normal, c.way, c.count);
+        all(c.pose.position, c.pose.rotation, c.normal, c.gap, c.way, c.count);
         for (int i = 0; i < c.count; ++i) all(c.points[i].on_a, c.points[i].on_b, c.points[i].separation);
+    }
+    void operator()(const SpringSettings& s) { all(s.frequency, s.damping_ratio, s.rest, s.most); }
+    void operator()(const DriveSettings& d) {
+        all(d.measure, d.low, d.high, d.spring, d.motor_speed, d.motor_most, d.zero, d.coordinate);
+    }
+    template <int D>
+    void operator()(const JointRecord<D>& j) {
+        all(j.body_a, j.body_b, j.layout, j.anchor_a, j.anchor_b, j.frame_a, j.frame_b, j.drives,
+            j.held.linear, j.held.angular, j.held.friction, j.wrench.force, j.wrench.on_a, j.wrench.on_b,
+            j.kept);
     }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>
@@ -170,6 +180,12 @@ std::uint64_t World<D>::hash() const {
     w.forces.each([&](const ForceDefinition<D>& force, bool fired) {
         fold.all(force.kind, force.from, force.to, fired);
     });
+    for (const JointId<D>& id : w.joint_ids) {
+        const JointDefinition<D>& joint = w.joint_definitions[id.index];
+        fold.all(id, w.joints[id.index], joint.collide, joint.break_force, joint.break_torque);
+    }
+    for (const CouplingRecord<D>& c : w.couplings)
+        fold.all(c.joint, c.ends[0], c.ends[1], c.factors, c.sum, c.is_rope, c.kept);
     for (std::uint32_t i = 0; i < w.contacts.size(); ++i) fold(w.current(i));
     fold.all(w.caches, w.sensor_pairs);
     return fold.hash.value();

@@ -31,6 +31,14 @@ Manifold<D> manifold_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t
                                               -unrotate(b_in_a.rotation, axis));
     return moved(exchanged(seen), b_in_a);
 }
+/// How far they are apart at least, as `axis` shows.
+template <int D>
+double least_gap_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
+                         const Transform<D>& b_in_a, const Vec<D>& axis) {
+    if (a.kind == ShapeKind::terrain) return gap_along<D>(b, a.terrain->facet(facet), b_in_a, axis);
+    if (b.kind != ShapeKind::terrain) return gap_along<D>(a, b, b_in_a, axis);
+    return gap_along<D>(a, b.terrain->facet(facet), inverse(b_in_a), -unrotate(b_in_a.rotation, axis));
+}
 template <int D>
 std::optional<Separation<D>> gap_between(const Shape<D>& a, const Shape<D>& b, std::uint32_t facet,
                                          const Transform<D>& b_in_a) {

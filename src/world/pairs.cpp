@@ -42,7 +42,8 @@ bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const
                             ? a.group > 0
                             : (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
     if (!agreed || infos[a.body].disabled || infos[b.body].disabled) return false;
-    return senses || !std::ranges::binary_search(infos[a.body].ignored, b.body);
+    return senses || (!std::ranges::binary_search(infos[a.body].ignored, b.body) &&
+                      !std::ranges::binary_search(infos[a.body].jointed, b.body));
 }
 
 /// Two shapes whose boxes overlap: where they, or facets of a terrain, are no pair yet, they become one.

@@ -192,6 +192,7 @@ Counts World<D>::counts() const {
     counts.bodies = static_cast<int>(state_->body_slots.count());
     counts.shapes = static_cast<int>(state_->shape_slots.count());
     counts.forces = state_->forces.count();
+    counts.joints = static_cast<int>(state_->joint_ids.size());
     for (const std::uint32_t i : state_->movable) {
         counts.awake += state_->types[i] == BodyType::dynamic && state_->is_awake(i);
     }

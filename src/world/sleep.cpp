@@ -26,10 +26,12 @@ void WorldState<D>::wake_neighbours(std::uint32_t body) {
             wake(c.body_a == body ? c.body_b : c.body_a);
         });
     }
+    bonds.each(body, [&](std::uint32_t, std::uint32_t other) { wake(other); });
     wake(body);
 }
 
-/// Calls `visit(other)` for the bodies that can be moved and touch this one or are tied to it by a spring.
+/// Calls `visit(other)` for the bodies that can be moved and touch this one or are tied to it by a joint or a
+/// spring.
 template <int D>
 template <class Visit>
 void WorldState<D>::each_tied(std::uint32_t body, const Visit& visit) const {
@@ -37,6 +39,7 @@ void WorldState<D>::each_tied(std::uint32_t body, const Visit& visit) const {
         const ContactRecord<D>& c = contacts[contact];
         if (c.count > 0) visit(c.body_a == body ? c.body_b : c.body_a);
     });
+    bonds.each(body, [&](std::uint32_t, std::uint32_t other) { visit(other); });
     forces.each_tied(body, visit);
 }
 
@@ -68,6 +71,7 @@ void WorldState<D>::wake_touched(double dt) {
             break;
         }
     }
+    wake_jointed();
     if (to_wake.empty()) return;
     wake_islands();
     std::ranges::sort(roused);

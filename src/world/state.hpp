@@ -13,13 +13,16 @@
 #include "core/adjacency.hpp"
 #include "core/crew.hpp"
 #include "core/pair_set.hpp"
+#include "core/profiler.hpp"
 #include "core/slots.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
 #include "dynamics/contact_cache.hpp"
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
+#include "dynamics/joint.hpp"
 #include "geometry/shape.hpp"
+#include "solver/joint_load.hpp"
 #include "solver/solver.hpp"
 
 namespace carom::detail {
@@ -96,6 +99,7 @@ struct EventBuffers {
     std::vector<ContactHit<D>> contact_hits;
     std::vector<SensorBegin<D>> sensor_begins;
     std::vector<SensorEnd<D>> sensor_ends;
+    std::vector<JointBreak<D>> joint_breaks;
 
     void clear() {
         contact_begins.clear();
@@ -103,6 +107,7 @@ struct EventBuffers {
         contact_hits.clear();
         sensor_begins.clear();
         sensor_ends.clear();
+        joint_breaks.clear();
     }
 };
 
@@ -112,6 +117,7 @@ template <int D>
 struct WorldState {
     WorldDefinition<D> definition;
     std::shared_ptr<Scheduler> scheduler;  ///< or none: then all is done by the calling thread
+    std::optional<Profiler> profiler;      ///< if the user wants to know what steps take
     double time = 0;
     double last_step = 0;
     std::uint64_t step_count = 0;
@@ -145,6 +151,14 @@ struct WorldState {
 
     Forces<D> forces;
 
+    // Joints, by index.
+    Slots joint_slots;
+    std::vector<JointRecord<D>> joints;
+    std::vector<JointDefinition<D>> joint_definitions;
+    Adjacency bonds;                           ///< the joints by body
+    std::vector<JointId<D>> joint_ids;         ///< all that are in use, oldest first
+    std::vector<CouplingRecord<D>> couplings;  ///< of the joints that couple others, oldest first
+
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
     std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
@@ -171,12 +185,14 @@ struct WorldState {
     std::vector<std::uint32_t> roused;  ///< bodies that may belong to `awake` by now
     std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
     bool some_locked = false;           ///< has any body ever had a locked axis?
-    std::vector<std::uint32_t> regrouped;      ///< bodies that got their second contact with a fixed shape
-    std::vector<std::uint32_t> to_place;       ///< contacts that the solver is to take up
-    std::vector<std::uint32_t> touch_changes;  ///< contacts that began or ended to touch
-    std::vector<std::uint32_t> fast;           ///< bodies that came so far in this step that they may pass
-                                               ///< through something
-    std::vector<std::uint32_t> flying;         ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> regrouped;         ///< bodies that got their second contact with a fixed shape
+    std::vector<std::uint32_t> to_place;          ///< contacts that the solver is to take up
+    std::vector<std::uint32_t> touch_changes;     ///< contacts that began or ended to touch
+    std::vector<std::uint32_t> fast;              ///< bodies that came so far in this step that they may pass
+                                                  ///< through something
+    std::vector<std::uint32_t> flying;            ///< indices of the dynamic bodies that nothing touches
+    std::vector<std::uint32_t> active_joints;     ///< indices of the joints that the solver sees
+    std::vector<std::uint32_t> active_couplings;  ///< the same in `couplings`
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
@@ -194,11 +210,12 @@ struct WorldState {
 
     // step.cpp: the stages of a step, in the order of `step`.
     void step(double dt);
+    void count_work(StepProfile& profile) const;
     void begin_step(double dt);
     void list_moving();
     void list_awake(std::uint32_t body);
     void sum_forces();
-    void solve_contacts(double dt);
+    void solve_constraints(double dt);
     void fly_free_bodies(double dt);
     void move_kinematic_bodies(double dt);
     void finish_bodies();
@@ -232,6 +249,7 @@ struct WorldState {
     void remove_contact(std::size_t contact);
     void remove_picked_contacts();
     void remove_contacts_of(std::uint32_t body);
+    void remove_contacts_between(std::uint32_t body, std::uint32_t other);
     void remove_contacts_of_shape(std::uint32_t shape);
     void forget_manifolds_of(std::uint32_t body);
     void loosen(std::uint32_t contact);
@@ -298,6 +316,17 @@ struct WorldState {
     bool gather_resting(std::uint32_t body);
     template <class Visit>
     void each_tied(std::uint32_t body, const Visit& visit) const;
+
+    // joints.cpp: what binds bodies.
+    void list_active_joints();
+    void wake_jointed();
+    void break_joints();
+    void remove_joint(std::uint32_t joint);
+    void remove_joints_of(std::uint32_t body);
+    std::uint32_t index(JointId<D> joint) const;
+    const CouplingRecord<D>* coupling_of(std::uint32_t joint) const;
+    JointPose<D> joint_pose(std::uint32_t joint) const { return pose_of<D>(joints[joint], states, masses); }
+    Load<D> joint_load(std::uint32_t joint) const;
 
     // queries.cpp: questions between steps.
     bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;

@@ -39,35 +39,74 @@ void WorldState<D>::quarantine(std::uint32_t body) {
     quarantined.push_back(body_slots.template id<BodyId<D>>(body));
 }
 
+namespace {
+
+/// A stage of a step: what it is called, and what it does, with the length of the step or without.
+template <int D>
+struct Stage {
+    const char* name;
+    void (WorldState<D>::*run)() = nullptr;
+    void (WorldState<D>::*run_for)(double dt) = nullptr;
+
+    constexpr Stage(const char* stage, void (WorldState<D>::*work)()) : name(stage), run(work) {}
+    constexpr Stage(const char* stage, void (WorldState<D>::*work)(double)) : name(stage), run_for(work) {}
+    void operator()(WorldState<D>& world, double dt) const { run ? (world.*run)() : (world.*run_for)(dt); }
+};
+
 /// One time step, stage by stage.
+template <int D>
+constexpr Stage<D> stages[] = {
+    {"begin_step", &WorldState<D>::begin_step},          // timed impulses; which bodies are awake
+    {"refresh_boxes", &WorldState<D>::refresh_boxes},    // fat boxes that were left are renewed
+    {"drop_pairs", &WorldState<D>::drop_pairs},          // neighbours that parted are forgotten
+    {"find_pairs", &WorldState<D>::find_pairs},          // new ones become contacts
+    {"take_loose", &WorldState<D>::take_loose},          // contacts that are looked at one by one
+    {"follow_bodies", &WorldState<D>::follow_bodies},    // contacts of bodies that began or ceased to move
+    {"collide", &WorldState<D>::collide},                // manifolds, impulses carried over
+    {"wake_touched", &WorldState<D>::wake_touched},      // sleepers that are being hit
+    {"place_contacts", &WorldState<D>::place_contacts},  // what came out, for the solver
+    {"sum_forces", &WorldState<D>::sum_forces},          // gravity, the user's forces, generators
+    {"solve_constraints", &WorldState<D>::solve_constraints},   // bodies in contact or on joints: the solver
+    {"fly_free_bodies", &WorldState<D>::fly_free_bodies},       // all others: the integrator
+    {"move_kinematic", &WorldState<D>::move_kinematic_bodies},  // what only the user moves
+    {"stop_at_obstacles", &WorldState<D>::stop_at_obstacles},   // nothing passes through what stands still
+    {"finish_bodies", &WorldState<D>::finish_bodies},           // quarantine, list of moved bodies
+    {"keep_in_boxes", &WorldState<D>::keep_in_boxes},           // queries find the bodies where they are now
+    {"report_contacts", &WorldState<D>::report_contacts},       // what began, ended and hit
+    {"sense", &WorldState<D>::sense},                           // who is inside the sensors
+    {"break_joints", &WorldState<D>::break_joints},             // those that were pulled too hard
+    {"fall_asleep", &WorldState<D>::fall_asleep},               // islands at rest
+};
+
+}  // namespace
+
 template <int D>
 void WorldState<D>::step(double dt) {
     require_positive(dt, "dt");
     require_in(dt, 0, 1, "dt");
-
-    begin_step(dt);             // timed impulses; which bodies are awake
-    refresh_boxes(dt);          // broad phase: fat boxes that were left are renewed
-    drop_pairs();               //   neighbours that parted are forgotten
-    find_pairs();               //   new ones become contacts
-    take_loose();               // contacts that are looked at one by one
-    follow_bodies();            // contacts of bodies that began or ceased to move
-    collide(dt);                // narrow phase: manifolds, impulses carried over
-    wake_touched(dt);           // sleepers that are being hit
-    place_contacts();           // what came out, for the solver
-    sum_forces();               // gravity, the user's forces, generators
-    solve_contacts(dt);         // bodies in contact: sub-steps of the constraint solver
-    fly_free_bodies(dt);        // all others: the integrator
-    move_kinematic_bodies(dt);  // what only the user moves
-    stop_at_obstacles();        // nothing passes through what stands still
-    finish_bodies();            // quarantine, list of moved bodies
-    keep_in_boxes(dt);          // queries find the bodies where they are now
-    report_contacts();          // what began, ended and hit
-    sense();                    // who is inside the sensors
-    fall_asleep(dt);            // islands at rest
-
+    if (profiler) profiler->begin_step();
+    for (const Stage<D>& stage : stages<D>) {
+        stage(*this, dt);
+        if (profiler) profiler->end_stage(stage.name);
+    }
+    if (profiler) {
+        profiler->end_step();
+        count_work(profiler->profile);
+    }
     time += dt;
     last_step = dt;
     ++step_count;
+}
+
+template <int D>
+void WorldState<D>::count_work(StepProfile& profile) const {
+    profile.awake = awake.size();
+    profile.pairs = contacts.size() + sensor_pairs.size();
+    profile.solved = solver.contacts();
+    profile.looked_at = loose.size();
+    profile.largest_colour = solver.largest_colour();
+    profile.without_colour = solver.without_colour();
+    profile.workers = scheduler ? scheduler->workers() : 1;
 }
 
 template <int D>
@@ -127,16 +166,17 @@ void WorldState<D>::sum_forces() {
 }
 
 template <int D>
-void WorldState<D>::solve_contacts(double dt) {
+void WorldState<D>::solve_constraints(double dt) {
+    list_active_joints();
     solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
-                definition.restitution_threshold});
+                definition.restitution_threshold, joints, active_joints, couplings, active_couplings});
 }
 
 template <int D>
 void WorldState<D>::fly_free_bodies(double dt) {
     flying.clear();
     for (const std::uint32_t i : awake) {
-        if (types[i] == BodyType::dynamic && !solver.has_contact(i)) flying.push_back(i);
+        if (types[i] == BodyType::dynamic && !solver.moves(i)) flying.push_back(i);
     }
     const LoadModel<D> model{definition.gravity, applied, flying, forces};
     fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);

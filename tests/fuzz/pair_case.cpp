@@ -2,6 +2,9 @@
 
 #include <sstream>
 
+#include "carom/error.hpp"
+#include "collision/manifold.hpp"
+
 #include "collision/sample.hpp"
 
 namespace carom::test {
@@ -114,8 +117,8 @@ template <int D>
 void PairCase<D>::check_closest_points() {
     const auto closest = closest_points<D>(a_.solid, a_.placed, b_.solid, b_.placed);
     const double distance = std::max(found_.distance, 0.0);
-    // On rims that are thousands of times larger than the other shape it is right to 1e-8 of them.
-    const double vague = tolerance_ + 2e-8 * big_;
+    // On rims that are thousands of times larger than the other shape it is right to 1e-7 of them.
+    const double vague = tolerance_ + 2e-7 * big_;
     expect(std::fabs(closest.distance - distance) <= vague, "closest distance", closest.distance, distance);
     expect(a_.height(closest.on_a) <= vague, "point of a above its surface", a_.height(closest.on_a), 0);
     expect(b_.height(closest.on_b) <= vague, "point of b above its surface", b_.height(closest.on_b), 0);
@@ -163,8 +166,18 @@ void PairCase<D>::check_manifold() {
         expect(std::fabs(least - found_.distance) <= slack, "deepest point", least, found_.distance);
     }
     const double doubt = 2e-5 * small_ + 1e-5 * big_ + tolerance_;
-    if (std::fabs(found_.distance - reach) > doubt) {
-        expect((m.count > 0) == (swapped.count > 0), "contact with shapes exchanged", m.count, swapped.count);
+    if (std::fabs(found_.distance - reach) <= doubt) return;
+    expect((m.count > 0) == (swapped.count > 0), "contact with shapes exchanged", m.count, swapped.count);
+    // An axis to begin with, good or bad, changes nothing.
+    const Transform<D> b_in_a = relative(a_.placed, b_.placed);
+    const detail::Shape<D>&a = a_.solid.shape(), &b = b_.solid.shape();
+    const auto without = detail::collide_shapes<D>(a, b, b_in_a, reach);
+    for (const Vec<D>& axis : {unrotate(a_.placed.rotation, found_.axis), random_.direction<D>()}) {
+        const auto again = detail::collide_shapes<D>(a, b, b_in_a, reach, axis);
+        expect(without.count == again.count, "points with an axis to begin with", again.count, without.count);
+        if (without.count == 0 || without.count != again.count) continue;
+        const double is = again.points[0].separation, was = without.points[0].separation;
+        expect(again.normal == without.normal && is == was, "separation with an axis to begin with", is, was);
     }
 }
 
@@ -186,7 +199,11 @@ std::string PairCase<D>::fault() {
 
 template <int D>
 std::string fault_of_case(int kind_a, int kind_b, std::uint64_t n) {
-    return PairCase<D>(kind_a, kind_b, n).fault();
+    try {
+        return PairCase<D>(kind_a, kind_b, n).fault();
+    } catch (const Error&) {
+        return {};  // points without volume make no hull
+    }
 }
 
 template std::string fault_of_case<2>(int, int, std::uint64_t);

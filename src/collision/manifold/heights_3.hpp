@@ -16,9 +16,9 @@ struct Memory3 {
     std::pmr::monotonic_buffer_resource resource{bytes.data(), bytes.size()};
 };
 
-/// How far a point lies above each face of a polyhedron. If the point is one of another polyhedron, no gap between
-/// the two along the normal of the face is larger. Nor is one along a normal between those of two faces that share
-/// an edge larger than the larger of their heights, if that is negative.
+/// How far a point lies above each face of a polyhedron. If the point is one of another polyhedron, no gap
+/// between the two along the normal of the face is larger. Nor is one along a normal between those of two
+/// faces that share an edge larger than the larger of their heights, if that is negative.
 class Heights3 {
   public:
     Heights3(const Polyhedron& core, const Vec3& point, Memory3& memory) : heights_(&memory.resource) {

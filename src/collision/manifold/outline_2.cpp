@@ -70,29 +70,31 @@ Closest closest_points(const Outline& front, const Facing& facing, const Outline
     return closest;
 }
 
-/// Fills in what two cores have that are apart.
-void set_apart(Proximity& result, const Closest& closest, const Outline& a, const Outline& b, double extent,
-               const Vec2& fallback_axis) {
+/// Fills in what two cores have that are apart. `separation` is the gap along `facing_axis`, the normal of
+/// the edge that faces the other outline, and `magnitude` the size of the numbers that they come from.
+/// Closest points that show no more of a gap than that edge does, but for rounding, may have no direction
+/// between them, or lie on an edge beside it; then its normal is the axis.
+void set_apart(Proximity& result, const Closest& closest, const Outline& a, const Outline& b,
+               const Vec2& facing_axis, double separation, double magnitude) {
     result.on_a = closest.edge_of_a ? closest.on_edge : closest.at_corner;
     result.on_b = closest.edge_of_a ? closest.at_corner : closest.on_edge;
     result.corner_a = closest.edge_of_a ? closest.end : closest.corner;
     result.corner_b = closest.edge_of_a ? closest.corner : closest.end;
     result.corners = !closest.inside;
     const Vec2 across = result.on_b - result.on_a;
-    const double distance = length(across);
-    // Points that touch but for rounding have no direction between them, and rounding may have put the one on
-    // an edge beside that which shows the gap.
-    const bool touching = distance <= 1e-13 * extent;
-    const Vec2 direction = touching ? fallback_axis : across / distance;
-    if (closest.inside && !touching) {
+    const double distance = length(across), rounding = 1e-12 * magnitude;
+    if (distance <= rounding || std::fabs(distance - separation) <= rounding) {
+        result.axis = facing_axis;
+        result.distance = separation > 0 ? separation : distance;
+    } else if (closest.inside) {
         // The normal is known better than the difference of two close points. Only a segment has two sides.
         const Outline& outline = closest.edge_of_a ? a : b;
         const Vec2 normal = outline.normal(closest.edge);
         result.axis = closest.edge_of_a ? normal : -normal;
-        if (outline.count() == 2 && dot(result.axis, direction) < 0) result.axis = -result.axis;
+        if (outline.count() == 2 && dot(result.axis, across) < 0) result.axis = -result.axis;
         result.distance = dot(result.axis, across);
     } else {
-        result.axis = direction;
+        result.axis = across / distance;
         result.distance = distance;
     }
 }
@@ -182,9 +184,9 @@ Proximity proximity(const Outline& a, const Outline& b) {
     if (facing.separation > 0 || only_segments) {
         const Closest closest = closest_points(front, facing, other, front_is_a);
         if (facing.separation > 0 || closest.square > 4 * facing.separation * facing.separation) {
-            const Vec2 from = front.corner(facing.edge), to = front.corner(front.next(facing.edge));
-            const double extent = length(from) + length(to) + length(other.corner(facing.corner));
-            set_apart(result, closest, a, b, extent, axis);
+            const double magnitude = front.magnitude(facing.edge) + front.magnitude(front.next(facing.edge)) +
+                                     other.magnitude(facing.corner);
+            set_apart(result, closest, a, b, axis, facing.separation, magnitude);
             return result;
         }
     }

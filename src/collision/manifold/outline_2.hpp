@@ -23,6 +23,8 @@ class Outline {
     int previous(int i) const { return i > 0 ? i - 1 : count() - 1; }
 
     Vec2 corner(int i) const { return apply(placed_, corners_[i]); }
+    /// The size of the numbers that the place of a corner comes from.
+    double magnitude(int i) const { return length(corners_[i]) + length(placed_.position); }
     /// Out of the edge from corner i to the next.
     Vec2 normal(int i) const { return rotate(placed_.rotation, normals_[i]); }
     /// By how much the shape is larger than its core.

@@ -47,6 +47,7 @@ struct Overlap {
     };
     Vec2 normal{};
     bool parallel_edges = false;
+    double shorter = 0;  ///< of the two edges
     std::array<End, 2> ends{};
     bool exists = false;
 };
@@ -64,6 +65,7 @@ Overlap clip(const Outline& leader, const Facing& facing, const Outline& other) 
     // begins.
     const int last_corner = edge, first_corner = other.next(edge);
     const Vec2 from = other.corner(first_corner), to = other.corner(last_corner);
+    result.shorter = std::min(whole, length(to - from));
     const double begin = dot(from - origin, along) / whole, end = dot(to - origin, along) / whole;
     const double low = std::max(begin, 0.0), high = std::min(end, whole);
     result.exists = high > low;
@@ -124,8 +126,13 @@ Manifold<2> touching(const Outline& first, const Outline& second, const Proximit
         result.points[result.count++] = {middle, separation, name};
     }
     // Two corners that are closest to each other have a direction of their own, unless edges that end there
-    // are so nearly parallel that they are what meets.
-    if (result.count == 2 && (!near.corners || overlap.parallel_edges)) return result;
+    // are so nearly parallel that they are what meets, and show the same gap.
+    const double gap = near.distance - rounding;
+    const auto confirms = [&] {
+        const double least = std::min(result.points[0].separation, result.points[1].separation);
+        return std::fabs(least - gap) <= 0.02 * overlap.shorter + 0.05 * std::fabs(gap);
+    };
+    if (result.count == 2 && (!near.corners || (overlap.parallel_edges && confirms()))) return result;
     // A point that is left of two keeps its name.
     if (result.count == 1 && !near.corners) feature = result.points[0].feature;
     return single_point(near, first, second, feature);

@@ -52,10 +52,10 @@ struct Arc {
 };
 using Arcs = std::pmr::vector<Arc>;
 
-/// The edges, placed by `t`, that can part the polyhedron by more than `gap` from another one, which has two points
-/// at these heights over the faces.
-void find_arcs(const Polyhedron& core, const Transform3& t, const Heights3& of_first, const Heights3& of_second,
-               double gap, Arcs& arcs) {
+/// The edges, placed by `t`, that can part the polyhedron by more than `gap` from another one, which has two
+/// points at these heights over the faces.
+void find_arcs(const Polyhedron& core, const Transform3& t, const Heights3& of_first,
+               const Heights3& of_second, double gap, Arcs& arcs) {
     const double needed = std::min(gap, 0.0) - core.unevenness;
     for (const Polyhedron::Edge& edge : core.edges) {
         if (of_first.hides(edge, needed) || of_second.hides(edge, needed)) continue;
@@ -106,8 +106,8 @@ Vec3 start_axis(const Pair3& pair, const Vec3& axis) {
 }
 
 /// Where the widest gap of all is at least `known`, the least that one may have and be preferred to it (see
-/// `advantage`), with room for corners that stand out of their faces and for rounding. Shapes that are apart are
-/// all treated as if they touched, since no face or edge may show more of the gap between two corners.
+/// `advantage`), with room for corners that stand out of their faces and for rounding. Shapes that are apart
+/// are all treated as if they touched, since no face or edge may show more of the gap between two corners.
 double least_of_interest(const Pair3& pair, double known) {
     const Polyhedron &a = *pair.a.core, &b = *pair.b.core;
     const double radii = core_radius(pair.a) + core_radius(pair.b);
@@ -125,36 +125,32 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     const Transform3& b_in_a = pair.b_in_a;
     const Transform3 a_in_b = inverse(b_in_a);
     const double extent = std::min(a.extent, b.extent);
-    const auto preferred = [&](const Nearest3& over, const Nearest3& favoured) {
-        return over.distance > favoured.distance + advantage(pair, search, favoured.distance, extent);
-    };
     const Nearest3 start = gap_along(pair, start_axis(pair, search.axis));
     if (start.distance > search.limit) return start;
     const double least = least_of_interest(pair, start.distance);
 
     Memory3 memory;
-    Nearest3 nearest = nothing;
     const Heights3 over_a(a, start.on_b, memory);
     const FaceGap of_a = widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit);
-    if (of_a.face != none) nearest = at_face(a, of_a);
-    if (of_a.gap > search.limit) return nearest;
+    if (of_a.gap > search.limit) return at_face(a, of_a);
     const Vec3 near_a = apply(a_in_b, start.on_a);
     const Heights3 over_b(b, near_a, memory);
     const FaceGap of_b = widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit);
-    if (of_b.face != none) {
-        const Nearest3 found = exchanged(at_face(b, of_b), b_in_a);
-        if (preferred(found, nearest)) nearest = found;
-    }
-    if (of_b.gap > search.limit) return nearest;
+    if (of_b.gap > search.limit) return exchanged(at_face(b, of_b), b_in_a);
 
-    const double needed =
-        std::max(of_b.gap, nearest.distance + advantage(pair, search, nearest.distance, extent));
+    // A face of a is favoured if no other gap is wider by more than the advantage, or else a face of b.
+    const auto favoured_up_to = [&](const FaceGap& found) {
+        return found.face == none ? -1e300 : found.gap + advantage(pair, search, found.gap, extent);
+    };
+    const double up_to_a = favoured_up_to(of_a), up_to_b = favoured_up_to(of_b);
+    const bool a_leads = up_to_a >= of_b.gap;
+    const double needed = std::max(of_b.gap, a_leads ? up_to_a : up_to_b);
     Arcs arcs_a(&memory.resource), arcs_b(&memory.resource);
     find_arcs(a, {}, over_a, Heights3(a, of_a.corner, memory), needed, arcs_a);
-    if (arcs_a.empty()) return nearest;
-    find_arcs(b, b_in_a, over_b, Heights3(b, of_b.corner, memory), needed, arcs_b);
+    if (!arcs_a.empty()) find_arcs(b, b_in_a, over_b, Heights3(b, of_b.corner, memory), needed, arcs_b);
     const Nearest3 of_edges = widest_over_edges(arcs_a, arcs_b);
-    return preferred(of_edges, nearest) ? of_edges : nearest;
+    if (a_leads && up_to_a >= of_edges.distance) return at_face(a, of_a);
+    return up_to_b >= of_edges.distance ? exchanged(at_face(b, of_b), b_in_a) : of_edges;
 }
 
 Nearest3 made_certain(const Pair3& pair, const Nearest3& found) {

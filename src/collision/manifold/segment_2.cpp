@@ -40,9 +40,13 @@ struct Meeting {
 
 template <>
 Manifold<2> collide_facet(const Shape<2>& convex, const Facet<2>& facet, const Transform<2>& placed,
-                          double reach, const Vec2&) {
+                          double reach, const Vec2& axis) {
+    const double last_gap = gap_along(convex, facet, placed, axis);
+    if (last_gap > reach) return apart_along(axis, last_gap);
     const Meeting meeting(convex, facet, placed);
-    if (meeting.behind || meeting.distance() > reach || meeting.looks_back(meeting.near.axis)) return {};
+    if (meeting.behind) return {};
+    if (meeting.distance() > reach) return apart_along(meeting.near.axis, meeting.distance());
+    if (meeting.looks_back(meeting.near.axis)) return {};
     const Manifold<2> result = touching(meeting.segment, meeting.outline, meeting.near, reach);
     return meeting.looks_back(result.normal) ? Manifold<2>{} : result;
 }

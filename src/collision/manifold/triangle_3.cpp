@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "collision/facet.hpp"
+#include "collision/manifold/heights_3.hpp"
 #include "collision/manifold/patch_3.hpp"
 #include "geometry/hull.hpp"
 
@@ -20,12 +21,12 @@ struct Arc {
 class Triangle {
   public:
     /// The triangle as a shape is made anew in the same place each time, so that nothing is allocated.
-    Triangle(const Facet<3>& facet, const Transform3& placed) : two_sided(facet.two_sided) {
+    Triangle(const Facet<3>& facet, const Vec3& front, const Transform3& placed)
+        : two_sided(facet.two_sided), normal(unrotate(placed.rotation, front)) {
         thread_local const std::shared_ptr<Polyhedron> core = std::make_shared<Polyhedron>();
         core->vertices.clear();
         for (const Vec3& p : facet.points) core->vertices.push_back(apply_inverse(placed, p));
         const std::vector<Vec3>& v = core->vertices;
-        normal = unrotate(placed.rotation, facet.normal());
         core->normals.assign({normal});
         core->offsets.assign({dot(normal, v[0])});
         core->indices.assign({0, 1, 2});
@@ -168,21 +169,30 @@ void offer_normals(Widest& widest, const Triangle& triangle, const Polyhedron& c
     widest.offer({-triangle.normal, below, high + below * triangle.normal, high, false});
 }
 
+/// How far the triangle's corners lie above the faces of the polyhedron.
+using CornerHeights = std::array<Heights3, 3>;
+
 /// Along the normals of the polyhedron's faces.
-void offer_faces(Widest& widest, const Triangle& triangle, const Polyhedron& core) {
+void offer_faces(Widest& widest, const Triangle& triangle, const Polyhedron& core,
+                 const CornerHeights& heights) {
     for (std::size_t f = 0; f < core.normals.size(); ++f) {
+        const double gap = std::min({heights[0][f], heights[1][f], heights[2][f]});
         const Vec3& n = core.normals[f];
-        std::size_t deepest = 0;
-        for (std::size_t i = 1; i < 3; ++i)
-            if (dot(n, triangle.corner(i)) < dot(n, triangle.corner(deepest))) deepest = i;
-        const double gap = dot(n, triangle.corner(deepest)) - core.offsets[f];
+        if (gap <= widest.distance() && !triangle.looks_back(-n)) continue;
+        const std::size_t deepest = heights[0][f] == gap ? 0 : heights[1][f] == gap ? 1 : 2;
         widest.offer({-n, gap, triangle.corner(deepest), triangle.corner(deepest) - gap * n, false});
     }
 }
 
-/// Across edges of both whose arcs of the Gauss map cross (see `polyhedron_polyhedron`).
-void offer_edges(Widest& widest, const std::array<Arc, 3>& arcs, const Polyhedron& core) {
+/// Across edges of both whose arcs of the Gauss map cross (see `polyhedron_polyhedron`), unless the gap there
+/// is known to be less than `least`.
+void offer_edges(Widest& widest, const std::array<Arc, 3>& arcs, const Polyhedron& core,
+                 const CornerHeights& heights, double least) {
+    const double needed = std::min(least, 0.0) - core.unevenness;
     for (const Polyhedron::Edge& edge : core.edges) {
+        if (heights[0].hides(edge, needed) || heights[1].hides(edge, needed) ||
+            heights[2].hides(edge, needed))
+            continue;
         const Vec3 &left = core.normals[edge.left], &right = core.normals[edge.right];
         const Vec3& start = core.vertices[edge.from];
         const Vec3 along = core.vertices[edge.to] - start;
@@ -206,12 +216,19 @@ Nearest3 triangle_polyhedron(const Triangle& triangle, const Shape<3>& shape, co
     Widest widest(triangle), of_faces(triangle), of_edges(triangle);
     offer_normals(widest, triangle, core);
     if (widest.distance() > search.limit) return widest.result();
-    offer_faces(of_faces, triangle, core);
+    Memory3 memory;
+    const CornerHeights heights{Heights3(core, triangle.corner(0), memory),
+                                Heights3(core, triangle.corner(1), memory),
+                                Heights3(core, triangle.corner(2), memory)};
+    offer_faces(of_faces, triangle, core, heights);
     widest.offer(of_faces.result(), favoured(widest));
     if (widest.result().distance > search.limit) return widest.result();
-    offer_edges(of_edges, {triangle.front_arc(0), triangle.front_arc(1), triangle.front_arc(2)}, core);
+    const double least = widest.distance();
+    offer_edges(of_edges, {triangle.front_arc(0), triangle.front_arc(1), triangle.front_arc(2)}, core,
+                heights, least);
     if (triangle.two_sided || std::max(widest.distance(), of_edges.distance()) <= 0)
-        offer_edges(of_edges, {triangle.back_arc(0), triangle.back_arc(1), triangle.back_arc(2)}, core);
+        offer_edges(of_edges, {triangle.back_arc(0), triangle.back_arc(1), triangle.back_arc(2)}, core,
+                    heights, least);
     widest.offer(of_edges.result(), favoured(widest));
     return widest.result();
 }
@@ -255,27 +272,39 @@ Nearest3 nearest_to(const Triangle& triangle, const Pair3& pair, const Search3& 
     }
 }
 
-bool is_behind(const Triangle& triangle, const Shape<3>& convex) {
-    return !triangle.two_sided && triangle.height(middle_of(convex)) < 0;
+/// Is the middle of the shape behind the facet, whose front looks along `front`?
+bool is_behind(const Facet<3>& facet, const Vec3& front, const Vec3& middle) {
+    return !facet.two_sided && dot(front, middle - facet.points[0]) < 0;
 }
 
 }  // namespace
 
 template <>
-Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const Transform<3>& placed,
-                          double reach, const Vec3&) {
-    const Triangle triangle(facet, placed);
-    if (is_behind(triangle, convex)) return {};
+Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const Transform3& placed,
+                          double reach, const Vec3& axis) {
+    // Most facets near a shape are apart from it along the axis of last time, or in front of it.
+    const double last_gap = gap_along(convex, facet, placed, axis);
+    if (last_gap > reach) return apart_along(axis, last_gap);
+    const Vec3 front = facet.normal();
+    if (is_behind(facet, front, apply(placed, middle_of(convex)))) return {};
+    const double height = gap_along(convex, facet, placed, front);
+    if (height > reach) return apart_along(front, height);
+
+    const Triangle triangle(facet, front, placed);
     const Transform3 here{};
     const Pair3 pair{triangle.shape, convex, here};
-    const double limit = reach + core_radius(convex);
+    const double radius = core_radius(convex), limit = reach + radius;
+    const auto apart = [&](const Nearest3& found) {
+        return apart_along(rotate(placed.rotation, found.normal), found.distance - radius);
+    };
     Nearest3 found = nearest_to(triangle, pair, {limit, true, {}});
-    if (found.distance > limit) return {};
+    if (found.distance > limit) return apart(found);
     std::optional<Manifold<3>> patch;
     if (!triangle.looks_back(found.normal)) patch = contact_patch(pair, found, reach);
     if (!patch) {
         found = made_certain(pair, nearest_to(triangle, pair, {limit, false, {}}));
-        if (found.distance > limit || triangle.looks_back(found.normal)) return {};
+        if (found.distance > limit) return apart(found);
+        if (triangle.looks_back(found.normal)) return {};
         patch = contact_patch(pair, found, reach);
     }
     return triangle.looks_back(patch->normal) ? Manifold<3>{} : moved(*patch, placed);
@@ -283,15 +312,26 @@ Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const T
 
 template <>
 std::optional<Separation<3>> separate_facet(const Shape<3>& convex, const Facet<3>& facet,
-                                            const Transform<3>& placed) {
-    const Triangle triangle(facet, placed);
-    if (is_behind(triangle, convex)) return std::nullopt;
+                                            const Transform3& placed) {
+    const Vec3 front = facet.normal();
+    if (is_behind(facet, front, apply(placed, middle_of(convex)))) return std::nullopt;
+    const Triangle triangle(facet, front, placed);
     const Transform3 here{};
     const Pair3 pair{triangle.shape, convex, here};
+    const auto answer = [&](const Vec3& normal, double distance) {
+        const Separation<3> found{rotate(placed.rotation, normal), distance - core_radius(convex)};
+        return triangle.looks_back(normal) ? std::nullopt : std::optional(found);
+    };
+    // Closest points take less time than all pairs of edges, but rounding blurs the direction between those
+    // that all but touch.
+    if (convex.core) {
+        const CoreDistance<3> closest = core_distance<3>(pair.a, pair.b, here);
+        const bool clear = closest.distance > 1e-4 * (core_extent(pair.a) + core_extent(convex));
+        if (clear) return answer(closest.axis, closest.distance);
+    }
     Nearest3 found = nearest_to(triangle, pair, {std::numeric_limits<double>::infinity(), false, {}});
     if (found.distance > 0) found = made_certain(pair, found);
-    if (triangle.looks_back(found.normal)) return std::nullopt;
-    return Separation<3>{rotate(placed.rotation, found.normal), found.distance - core_radius(convex)};
+    return answer(found.normal, found.distance);
 }
 
 }  // namespace carom::detail

@@ -1,0 +1,12 @@
+#include "simd/lanes.hpp"
+#include "solver/joint_passes_in_lanes.hpp"
+
+namespace carom::detail {
+
+using HWY_NAMESPACE::Lanes;
+static_assert(Lanes::count == 16, "this file has to be compiled for the instructions of 16 lanes");
+
+const JointPrograms<2>& joint_programs_16_2() { return JointPassesIn<2, Lanes>::all; }
+const JointPrograms<3>& joint_programs_16_3() { return JointPassesIn<3, Lanes>::all; }
+
+}  // namespace carom::detail

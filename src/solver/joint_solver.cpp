@@ -1,0 +1,138 @@
+#include "solver/joint_solver.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "simd/width.hpp"
+#include "solver/joint_load.hpp"
+
+namespace carom::detail {
+
+template <int D>
+void JointSolver<D>::prepare(const JointInput<D>& input) {
+    batches_.clear();
+    couplings_.prepare(input);
+    if (input.active.empty()) return;
+    step_ = joint_step(input.substep);
+    wide_ = &joint_programs<D>(lane_width());
+    colour(input);
+    make_batches(input);
+    fill(input);
+    for (const Batch& batch : batches_) program(batch).start(span(batch), input.bodies);
+}
+
+/// Greedy colouring in the order of the joints: the first colour that neither body has yet.
+template <int D>
+void JointSolver<D>::colour(const JointInput<D>& input) {
+    taken_.assign(input.slots.size(), 0);
+    colour_.resize(input.active.size());
+    const auto is_movable = [&](std::uint32_t slot) { return slot >= input.bodies.first_movable; };
+    for (std::size_t i = 0; i < input.active.size(); ++i) {
+        const JointRecord<D>& joint = input.joints[input.active[i]];
+        const std::uint32_t a = input.slot_of(joint.body_a), b = input.slot_of(joint.body_b);
+        const std::uint64_t taken = (is_movable(a) ? taken_[a] : 0) | (is_movable(b) ? taken_[b] : 0);
+        const int free = std::countr_one(taken);
+        const std::uint64_t bit = free == overflow ? 0 : std::uint64_t{1} << free;
+        if (is_movable(a)) taken_[a] |= bit;
+        if (is_movable(b)) taken_[b] |= bit;
+        colour_[i] = static_cast<std::uint8_t>(free);
+    }
+}
+
+template <int D>
+void JointSolver<D>::make_batches(const JointInput<D>& input) {
+    std::array<std::array<std::uint32_t, layout_count>, colours + 1> next{};
+    for (std::size_t i = 0; i < input.active.size(); ++i)
+        ++next[colour_[i]][input.joints[input.active[i]].layout];
+    std::size_t places = 0, blocks = 0, floats = 0;
+    for (int c = 0; c <= colours; ++c) {
+        for (std::uint32_t layout = 0; layout < layout_count; ++layout) {
+            std::uint32_t& count = next[c][layout];
+            if (count == 0) continue;
+            const std::uint32_t width = c == overflow ? 1 : static_cast<std::uint32_t>(wide_->width);
+            const std::size_t of_batch = (count + width - 1) / width;
+            batches_.push_back({layout, width, places, blocks, of_batch, floats});
+            count = static_cast<std::uint32_t>(places);  // from now on the next free place
+            places += of_batch * width;
+            blocks += of_batch;
+            floats += (of_batch * width * joint_loaders<D>()[layout].fields + 15) / 16 * 16;
+        }
+    }
+    joint_.assign(places, none);
+    a_.assign(places, BodySlots::still);
+    b_.assign(places, BodySlots::still);
+    some_fixed_.assign(blocks, 0);
+    // Lanes without a joint are to hold zeros.
+    lines_.assign((floats + 15) / 16, Line{});
+    for (std::size_t i = 0; i < input.active.size(); ++i) {
+        const JointRecord<D>& joint = input.joints[input.active[i]];
+        const std::size_t place = next[colour_[i]][joint.layout]++;
+        joint_[place] = input.active[i];
+        a_[place] = input.slot_of(joint.body_a);
+        b_[place] = input.slot_of(joint.body_b);
+    }
+}
+
+template <int D>
+void JointSolver<D>::fill(const JointInput<D>& input) {
+    for (const Batch& batch : batches_) {
+        const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
+        for (std::size_t block = 0; block < batch.blocks; ++block) {
+            float* to = rows(batch) + block * loader.fields * batch.width;
+            for (std::size_t lane = 0; lane < batch.width; ++lane) {
+                const std::size_t place = batch.first_place + block * batch.width + lane;
+                const bool fixed =
+                    a_[place] < input.bodies.first_movable || b_[place] < input.bodies.first_movable;
+                some_fixed_[batch.first_block + block] |= fixed ? 1 : 0;
+                if (joint_[place] == none) continue;
+                JointRecord<D>& joint = input.joints[joint_[place]];
+                loader.load(joint, pose_of<D>(joint, input.states, input.masses), input.states, input.masses,
+                            input.substep, to + lane, batch.width);
+            }
+        }
+    }
+}
+
+template <int D>
+const JointProgram<D>& JointSolver<D>::program(const Batch& batch) const {
+    const bool is_wide = batch.width == static_cast<std::uint32_t>(wide_->width);
+    return (is_wide ? *wide_ : joint_programs<D>(1)).of_layout[batch.layout];
+}
+
+template <int D>
+JointSpan JointSolver<D>::span(const Batch& batch) {
+    return {rows(batch), a_.data() + batch.first_place, b_.data() + batch.first_place,
+            some_fixed_.data() + batch.first_block, batch.blocks};
+}
+
+template <int D>
+void JointSolver<D>::solve(const RecordView<D>& bodies) {
+    couplings_.solve(bodies);
+    for (const Batch& batch : batches_) program(batch).solve(span(batch), bodies, step_);
+}
+
+template <int D>
+void JointSolver<D>::relax(const RecordView<D>& bodies) {
+    couplings_.relax(bodies);
+    for (const Batch& batch : batches_) program(batch).relax(span(batch), bodies, step_);
+}
+
+template <int D>
+void JointSolver<D>::store(const JointInput<D>& input) const {
+    couplings_.store(input);
+    for (const Batch& batch : batches_) {
+        const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
+        for (std::size_t i = 0; i < batch.blocks * batch.width; ++i) {
+            const std::uint32_t joint = joint_[batch.first_place + i];
+            if (joint == none) continue;
+            loader.store(input.joints[joint],
+                         rows(batch) + i / batch.width * loader.fields * batch.width + i % batch.width,
+                         batch.width);
+        }
+    }
+}
+
+template class JointSolver<2>;
+template class JointSolver<3>;
+
+}  // namespace carom::detail

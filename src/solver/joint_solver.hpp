@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/couplings.hpp"
+#include "solver/joint_input.hpp"
+#include "solver/joint_passes.hpp"
+
+namespace carom::detail {
+
+/// Joints in the sub-steps of the solver. Those of one colour share no body that can be pushed, and those of
+/// one colour and layout lie in blocks of as many lanes as the processor has.
+template <int D>
+class JointSolver {
+  public:
+    /// Takes the joints up and applies the impulses that they have kept.
+    void prepare(const JointInput<D>& input);
+    /// One pass at the start of a sub-step, and one after positions were integrated.
+    void solve(const RecordView<D>& bodies);
+    void relax(const RecordView<D>& bodies);
+    /// Gives the records their impulses.
+    void store(const JointInput<D>& input) const;
+
+  private:
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+    static constexpr int colours = 64, overflow = colours;
+    static constexpr std::size_t layout_count = layouts<D>.size();
+
+    /// Joints of one colour and layout, from a place on.
+    struct Batch {
+        std::uint32_t layout = 0;
+        std::uint32_t width = 1;
+        std::size_t first_place = 0, first_block = 0, blocks = 0;
+        std::size_t first_float = 0;
+    };
+    struct alignas(64) Line {
+        std::array<float, 16> floats;
+    };
+
+    void colour(const JointInput<D>& input);
+    void make_batches(const JointInput<D>& input);
+    void fill(const JointInput<D>& input);
+    const JointProgram<D>& program(const Batch& batch) const;
+    JointSpan span(const Batch& batch);
+    float* rows(const Batch& batch) { return lines_[0].floats.data() + batch.first_float; }
+    const float* rows(const Batch& batch) const { return lines_[0].floats.data() + batch.first_float; }
+
+    JointStep<float> step_{};
+    const JointPrograms<D>* wide_ = nullptr;
+    std::vector<std::uint64_t> taken_;          ///< by slot: colours of its joints
+    std::vector<std::uint8_t> colour_;          ///< by active joint
+    std::vector<Batch> batches_;                ///< in the order in which they are solved
+    std::vector<std::uint32_t> joint_, a_, b_;  ///< by place: joint (or none) and slots of its bodies
+    std::vector<std::uint8_t> some_fixed_;      ///< by block
+    std::vector<Line> lines_;
+    Couplings<D> couplings_;
+};
+
+}  // namespace carom::detail
