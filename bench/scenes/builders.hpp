@@ -10,6 +10,12 @@ BenchWorld<D> large_pyramid();
 template <int D>
 BenchWorld<D> many_pyramids();
 BenchWorld<2> smash();
+template <int D>
+BenchWorld<D> joint_grid();
+BenchWorld<2> tumbler();
+BenchWorld<2> spinner();
+BenchWorld<2> rain_2();
+BenchWorld<3> rain_3();
 BenchWorld<3> convex_pile();
 template <int D>
 BenchWorld<D> sleeping_city();

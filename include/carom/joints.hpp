@@ -71,10 +71,11 @@ struct SliderJoint {
 template <int D>
 struct BallJoint {
     Vec<D> anchor{};
-    Vec3 axis{1, 0, 0};                         ///< 3D: along the limb, for the two limits
+    Vec3 axis{1, 0, 0};                         ///< 3D: along the limb (b), for the two limits
+    std::optional<Vec3> cone_axis{};            ///< 3D: of a, in the middle of the cone; `axis` when left out
     std::optional<double> swing_limit{};        ///< 3D: how far the axis leaves that of a, rad, in (0, π]
     std::optional<JointLimits> twist_limits{};  ///< 3D: turn about the axis, rad, within ±π
-    std::optional<JointSpring> spring{};        ///< pulls back to the pose of the start; `rest` has no use
+    std::optional<JointSpring> spring{};        ///< draws the axis to that of the cone; `rest` has no use
     double friction = 0;                        ///< greatest torque against turning, N·m
 };
 

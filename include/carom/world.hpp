@@ -253,7 +253,7 @@ class World {
     /// nothing.
     double linear_error(JointId<D> joint) const;
     double angular_error(JointId<D> joint) const;
-    /// Force on b, and torque on b about its anchor, at the end of the last step, N and N·m. Of a pulley,
+    /// Force on b, and torque on b about its anchor, on the average of the last step, N and N·m. Of a pulley,
     /// gear or rack the tension, or the torque or force on body b of its second joint.
     Vec<D> joint_force(JointId<D> joint) const;
     Angular<D> joint_torque(JointId<D> joint) const;

@@ -54,33 +54,20 @@ constexpr auto layouts = [] {
     using enum DriveKind;
     using A = AngularPart;
     if constexpr (D == 2) {
-        return std::array{layout(point, A::none),
-                          layout(point, A::none, turn),
-                          layout(point, A::locked),
-                          layout(point, A::held),
-                          layout(held, A::none),
-                          layout(held, A::locked),
-                          layout(held, A::held),
-                          layout(none, A::locked),
-                          layout(none, A::held),
-                          layout(none, A::none, stretch),
-                          layout(line, A::locked, slide),
-                          layout(line, A::none, slide, turn)};
+        return std::array{layout(point, A::none),         layout(point, A::none, turn),
+                          layout(point, A::locked),       layout(point, A::held),
+                          layout(held, A::none),          layout(held, A::locked),
+                          layout(held, A::held),          layout(none, A::locked),
+                          layout(none, A::held),          layout(none, A::none, stretch),
+                          layout(line, A::locked, slide), layout(line, A::none, slide, turn)};
     } else {
-        return std::array{layout(point, A::none),
-                          layout(point, A::held, turn, turn),
-                          layout(point, A::across),
-                          layout(point, A::across, turn),
-                          layout(point, A::locked),
-                          layout(point, A::held),
-                          layout(held, A::none),
-                          layout(held, A::locked),
-                          layout(held, A::held),
-                          layout(none, A::across),
-                          layout(none, A::held),
-                          layout(none, A::none, stretch),
-                          layout(line, A::locked, slide),
-                          layout(line, A::square, slide, turn, turn)};
+        return std::array{layout(point, A::none),         layout(point, A::held, turn, turn),
+                          layout(point, A::across),       layout(point, A::across, turn),
+                          layout(point, A::locked),       layout(point, A::held),
+                          layout(held, A::none),          layout(held, A::locked),
+                          layout(held, A::held),          layout(none, A::across),
+                          layout(none, A::held),          layout(none, A::none, stretch),
+                          layout(line, A::locked, slide), layout(line, A::square, slide, turn, turn)};
     }
 }();
 
@@ -113,8 +100,8 @@ struct SpringSettings {
     double frequency = 0, damping_ratio = 0, rest = 0;
     double most = std::numeric_limits<double>::infinity();  ///< force or torque
 
-    // As it acts through sub-steps of one length: a unit of mass is pulled by stiffness · the mean stretch and
-    // damping · the mean speed. Worked out anew when the length changes.
+    // As it acts through sub-steps of one length: a unit of mass is pulled by stiffness · the mean stretch
+    // and damping · the mean speed. Worked out anew when the length changes.
     double substep = 0, stiffness = 0, damping = 0;
 };
 
@@ -155,25 +142,27 @@ constexpr std::uint32_t no_layout = 0xffffffffu;
 template <int D>
 struct JointRecord {
     std::uint32_t body_a = no_body, body_b = no_body;
-    std::uint32_t layout = 0;  ///< in `layouts<D>`
-    Vec<D> anchor_a{}, anchor_b{};        ///< in the frames of the bodies
-    Rotation<D> frame_a{}, frame_b{};     ///< the joint's frame in those of the bodies
+    std::uint32_t layout = 0;          ///< in `layouts<D>`
+    Vec<D> anchor_a{}, anchor_b{};     ///< in the frames of the bodies
+    Rotation<D> frame_a{}, frame_b{};  ///< the joint's frame in those of the bodies
     std::vector<DriveSettings> drives;
     HeldSettings held;
-    Wrench<D, float> wrench{};       ///< impulse of the last sub-step, N·s: force, and torques about the centres
+    Wrench<D, float> wrench{};  ///< impulse of the last sub-step, N·s: force, and torques about the centres
+    Wrench<D, float> before{};  ///< the same of the sub-step before that
+    Wrench<D, float> total{};   ///< impulse of the whole last step
     std::array<float, most_kept> kept{};  ///< impulses of the rows in the last sub-step
 };
 
-/// A joint that couples two coordinates, each between two bodies: the sum of factor · coordinate stays what it
-/// is, or at most that (a rope).
+/// A joint that couples two coordinates, each between two bodies: the sum of factor · coordinate stays what
+/// it is, or at most that (a rope).
 template <int D>
 struct CouplingRecord {
-    std::uint32_t joint = 0;                 ///< its place among the joints of the world
-    std::array<JointRecord<D>, 2> ends;      ///< each with one drive, whose coordinate it is
+    std::uint32_t joint = 0;             ///< its place among the joints of the world
+    std::array<JointRecord<D>, 2> ends;  ///< each with one drive, whose coordinate it is
     std::array<double, 2> factors{};
     double sum = 0;
     bool is_rope = false;
-    float kept = 0;                          ///< impulse of the last sub-step
+    float kept = 0, before = 0;  ///< impulse of the last sub-step, and of the one before
 };
 
 }  // namespace carom::detail

@@ -46,11 +46,6 @@ void read_materials(const Value& value, Materials& materials) {
     });
 }
 
-void read_joints(const Value& value) {
-    for_each_element(value,
-                     [](const Value& joint) { joint.fail("joints are not supported by this version"); });
-}
-
 template <int D>
 Scene read_scene(const Value& document) {
     Scene scene;
@@ -58,12 +53,13 @@ Scene read_scene(const Value& document) {
     auto& data = scene.data.emplace<SceneData<D>>();
     Materials materials;
     const auto ignore = [](const Value&) {};
-    // Materials come before the bodies that are made of them, and bodies before the forces that name them.
+    // Materials come before the bodies that are made of them, and bodies before the joints and forces that name
+    // them.
     read_object(document, {field("carom", ignore), field("dimension", ignore), field("name", scene.name),
                            field("world", [&](const Value& v) { read_world(v, data.world, scene.step); }),
                            field("materials", [&](const Value& v) { read_materials(v, materials); }),
                            field("bodies", [&](const Value& v) { read_bodies(v, materials, data); }),
-                           field("joints", read_joints),
+                           field("joints", [&](const Value& v) { read_joints(v, data); }),
                            field("forces", [&](const Value& v) { read_forces(v, data); })});
     return scene;
 }
@@ -97,6 +93,22 @@ ForceDefinition<D> with_handles(ForceDefinition<D> force, const std::vector<Body
     return force;
 }
 
+/// The same for a joint.
+template <int D>
+JointDefinition<D> with_handles(JointDefinition<D> joint, const std::vector<BodyId<D>>& bodies,
+                                const std::vector<JointId<D>>& joints) {
+    if (joint.a) joint.a = bodies[joint.a->index];
+    if (joint.b) joint.b = bodies[joint.b.index];
+    const auto visit = [&](auto& kind) {
+        if constexpr (requires { kind.joint_a; }) {
+            kind.joint_a = joints[kind.joint_a.index];
+            kind.joint_b = joints[kind.joint_b.index];
+        }
+    };
+    std::visit(visit, joint.kind);
+    return joint;
+}
+
 }  // namespace
 
 Scene parse_scene(std::string_view text, std::string_view where) {
@@ -121,10 +133,14 @@ Scene load_scene(const std::filesystem::path& path) {
 template <int D>
 SceneWorld<D> build(const Scene& scene) {
     const auto& data = std::get<SceneData<D>>(scene.data);
-    SceneWorld<D> result{at(scene, "world", [&] { return World<D>(data.world); }), {}, {}};
+    SceneWorld<D> result{at(scene, "world", [&] { return World<D>(data.world); }), {}, {}, {}};
     for (std::size_t i = 0; i < data.bodies.size(); ++i)
         result.bodies.push_back(
             at(scene, fmt::format("bodies[{}]", i), [&] { return result.world.add_body(data.bodies[i]); }));
+    for (std::size_t i = 0; i < data.joints.size(); ++i)
+        result.joints.push_back(at(scene, fmt::format("joints[{}]", i), [&] {
+            return result.world.add_joint(with_handles(data.joints[i], result.bodies, result.joints));
+        }));
     for (std::size_t i = 0; i < data.forces.size(); ++i)
         result.forces.push_back(at(scene, fmt::format("forces[{}]", i), [&] {
             return result.world.add_force(with_handles(data.forces[i], result.bodies));

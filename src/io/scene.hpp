@@ -10,12 +10,14 @@
 
 namespace carom::io {
 
-/// The world of a scene, as definitions that can be given to a `World<D>` as they are, except that a force
-/// names its bodies by their index in `bodies`, there being no handles yet.
+/// The world of a scene, as definitions that can be given to a `World<D>` as they are, except that a joint
+/// or force names its bodies by their index in `bodies`, and a joint other joints by their index in `joints`, there
+/// being no handles yet.
 template <int D>
 struct SceneData {
     WorldDefinition<D> world{};
     std::vector<BodyDefinition<D>> bodies;
+    std::vector<JointDefinition<D>> joints;
     std::vector<ForceDefinition<D>> forces;
     /// The name of the material of each shape of each body; empty where the shape names none.
     std::vector<std::vector<std::string>> materials;
@@ -37,6 +39,7 @@ template <int D>
 struct SceneWorld {
     World<D> world;
     std::vector<BodyId<D>> bodies;  ///< in the order of the scene
+    std::vector<JointId<D>> joints;
     std::vector<ForceId<D>> forces;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "io/names.hpp"
 #include "io/scene_parts.hpp"
 
 namespace carom::io {
@@ -13,28 +14,19 @@ class BodyNames {
   public:
     explicit BodyNames(const SceneData<D>& scene) {
         for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-            if (!scene.bodies[i].name.empty())
-                indices_.emplace(scene.bodies[i].name, static_cast<std::uint32_t>(i));
-    }
-
-    BodyId<D> find(const Value& value) const {
-        std::string name;
-        read(value, name);
-        const auto found = indices_.find(name);
-        if (found != indices_.end()) return {found->second, 0};
-        std::vector<std::string_view> known;
-        for (const auto& [known_name, index] : indices_) known.push_back(known_name);
-        value.refuse(fmt::format("is not the name of a body{}", suggestion(name, known)));
+            indices_.add(scene.bodies[i].name, static_cast<std::uint32_t>(i));
     }
 
     /// The field of a body; `target` is its handle, or an optional one.
     template <class Target>
     Field operator()(std::string_view key, Target& target) const {
-        return {key, [this, &target](const Value& value) { target = find(value); }};
+        return {key, [this, &target](const Value& value) {
+                    target = BodyId<D>{indices_.find(value, "a body"), 0};
+                }};
     }
 
   private:
-    std::map<std::string_view, std::uint32_t> indices_;
+    IndexByName indices_;
 };
 
 Field needed(Field field) {

@@ -40,6 +40,10 @@ void read_shape(const Value& value, const Materials& materials, ShapeDefinition<
 template <int D>
 void read_bodies(const Value& value, const Materials& materials, SceneData<D>& scene);
 
+/// Reads the list of joints, which may name the bodies of the scene and earlier joints.
+template <int D>
+void read_joints(const Value& value, SceneData<D>& scene);
+
 /// Reads the list of forces, which may name the bodies of the scene.
 template <int D>
 void read_forces(const Value& value, SceneData<D>& scene);

@@ -12,7 +12,11 @@ JointRecord<D> place(const BallJoint<D>& joint, const JointSite<D>& site) {
     builder.anchors(joint.anchor, joint.anchor);
     if constexpr (D == 3) {
         require_direction(joint.axis, "axis");
-        builder.frame(frame_along(joint.axis)).drive(Measure::swing).drive(Measure::twist);
+        if (joint.cone_axis) require_direction(*joint.cone_axis, "cone_axis");
+        // The frame of a is that of b, swung by the shortest way: the twist is zero as the bodies stand.
+        const Rotation3 b = frame_along(joint.axis);
+        const Rotation3 swing = frame_along(unrotate(b, joint.cone_axis.value_or(joint.axis)));
+        builder.frames(b * swing, b).drive(Measure::swing).drive(Measure::twist);
     } else {
         builder.frame({});
     }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solver/drive.hpp"
 #include "solver/joint_load.hpp"
 
 namespace carom::detail {
@@ -16,6 +17,7 @@ void Couplings<D>::prepare(const JointInput<D>& input) {
         row.coupling = i;
         row.is_rope = c.is_rope;
         row.impulse = c.kept;
+        row.before = c.before;
         double sum = -c.sum;
         for (int k = 0; k < 2; ++k) {
             JointRecord<D>& joint = c.ends[k];
@@ -44,8 +46,9 @@ void Couplings<D>::store(const JointInput<D>& input) const {
     for (const Row& row : rows_) {
         CouplingRecord<D>& c = input.couplings[row.coupling];
         c.kept = row.impulse;
-        input.joints[c.joint].wrench = {row.impulse * row.on_last.force, row.on_last.on_a * row.impulse,
-                                        row.on_last.on_b * row.impulse};
+        c.before = row.before;
+        input.joints[c.joint].total = {row.total * row.on_last.force, row.on_last.on_a * row.total,
+                                       row.on_last.on_b * row.total};
     }
 }
 
@@ -67,10 +70,10 @@ template <int D>
 template <bool biased>
 float Couplings<D>::look_at_end(const End& end, const RecordView<D>& bodies, View& view) const {
     Body<D, float> a = gather<float>(bodies, &end.a), b = gather<float>(bodies, &end.b);
-    const Turning<D, float> ta(a.motion), tb(b.motion);
+    const Turning<D, float> ta(a.motion, step_.h), tb(b.motion, step_.h);
     Wrench<D, float> unused{};
     const Link<D, float> link{a.motion, b.motion, a.weight, b.weight, unused};
-    const Geometry<D, float> g = geometry<biased>(end.anchors, ta, tb, a.motion, b.motion, step_.h);
+    const Geometry<D, float> g = geometry<biased>(end.anchors, ta, tb, a.motion, b.motion);
     Turned<D, float> n;
     Wrench<D, float> w;
     float speed, change;
@@ -80,7 +83,7 @@ float Couplings<D>::look_at_end(const End& end, const RecordView<D>& bodies, Vie
         speed = dot(n.end, g.speed(link));
         change = length(g.gap) - length(end.anchors.gap);
     } else if (end.kind == DriveKind::slide) {
-        n = turned<biased>(end.axis, ta, step_.h);
+        n = turned<biased>(end.axis, ta);
         w = g.at_b(n.middle);
         speed = dot(n.end, g.speed_along_line(link));
         change = dot(n.now, g.gap) - dot(end.axis, end.anchors.gap);
@@ -91,7 +94,7 @@ float Couplings<D>::look_at_end(const End& end, const RecordView<D>& bodies, Vie
             speed = link.spin();
             change = turn;
         } else {
-            n = turned<biased>(end.axis, ta, step_.h);
+            n = turned<biased>(end.axis, ta);
             w = {{}, n.middle, n.middle};
             speed = dot(n.end, link.spin());
             change = 0.5f * dot(end.axis + n.now, turn);
@@ -152,8 +155,13 @@ void Couplings<D>::pass(const RecordView<D>& bodies) {
     for (Row& row : rows_) {
         const View view = look_at<biased>(row, bodies);
         if constexpr (biased) {
+            // A blow is not kept: it would strike again.
+            const float kept =
+                steady_share(row.impulse * row.impulse, row.impulse * row.before) * row.impulse;
+            row.before = row.impulse;
             // The impulses turn into their new directions (see JointPass::re_aim).
             push(row.effects, bodies, -row.impulse);
+            row.impulse = kept;
             push(view.effects, bodies, row.impulse);
             row.effects = view.effects;
         }
@@ -165,6 +173,7 @@ void Couplings<D>::pass(const RecordView<D>& bodies) {
         push(view.effects, bodies, next - row.impulse);
         row.impulse = next;
         row.on_last = view.on_last;
+        if constexpr (!biased) row.total += next;
         if constexpr (biased) {
             if (!is_slack) shift(view, bodies, -mass * step_.share * cut_to(view.error, step_.most_way));
         }

@@ -14,7 +14,10 @@ namespace carom::detail {
 template <int D>
 class Couplings {
   public:
-    /// Takes up the couplings of bodies that move and applies the impulses that they have kept.
+    /// Takes up the couplings of bodies that move.
+    void plan(const JointInput<D>& input) { rows_.resize(input.active_couplings.size()); }
+    bool any() const { return !rows_.empty(); }
+    /// Fills the rows and applies the impulses that they have kept.
     void prepare(const JointInput<D>& input);
     void solve(const RecordView<D>& bodies) { pass<true>(bodies); }
     void relax(const RecordView<D>& bodies) { pass<false>(bodies); }
@@ -39,7 +42,7 @@ class Couplings {
         std::array<End, 2> ends;
         float error = 0;  ///< at the start of the step
         bool is_rope = false;
-        float impulse = 0;
+        float impulse = 0, before = 0, total = 0;  ///< of this sub-step, of the one before, of the step
         std::array<Effect, 4> effects{};
         Wrench<D, float> on_last{};  ///< of a unit of impulse, of the second end
     };

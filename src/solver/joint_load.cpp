@@ -12,7 +12,7 @@ namespace carom::detail {
 
 template <int D>
 JointPose<D> pose_of(const JointRecord<D>& j, std::span<const BodyState<D>> states,
-                     std::span<const BodyMass<D>> masses) {
+                     std::span<const BodyMass<D>> masses, bool with_angle) {
     JointPose<D> p;
     const BodyState<D>& b = states[j.body_b];
     p.frame_b = b.rotation * j.frame_b;
@@ -30,8 +30,9 @@ JointPose<D> pose_of(const JointRecord<D>& j, std::span<const BodyState<D>> stat
         p.velocity_a = a.velocity;
         p.spin_a = a.angular_velocity;
     }
-    if constexpr (D == 2)
-        p.angle = whole_angle(b) - (j.body_a == no_body ? 0 : whole_angle(states[j.body_a]));
+    if constexpr (D == 2) {
+        if (with_angle) p.angle = whole_angle(b) - (j.body_a == no_body ? 0 : whole_angle(states[j.body_a]));
+    }
     return p;
 }
 
@@ -248,6 +249,7 @@ struct Load {
         Rows rows;
         std::memcpy(&rows.kept, joint.kept.data(), kept * sizeof(float));
         rows.wrench = joint.wrench;
+        rows.before = joint.before;
         if constexpr (has_anchors(L))
             rows.anchors = {narrow<float>(pose.arm_a), narrow<float>(pose.arm_b), narrow<float>(pose.gap)};
         set_linear(rows, joint, pose, h);
@@ -263,12 +265,14 @@ struct Load {
 
     static void store(JointRecord<D>& joint, const float* from, std::size_t stride) {
         std::array<float, fields> all{};
-        constexpr std::size_t wanted = kept + sizeof(Wrench<D, float>) / sizeof(float);
+        constexpr std::size_t wanted = kept + 3 * sizeof(Wrench<D, float>) / sizeof(float);
         for (std::size_t f = 0; f < wanted; ++f) all[f] = from[f * stride];
         Rows rows;
         std::memcpy(static_cast<void*>(&rows), all.data(), sizeof rows);
         std::memcpy(joint.kept.data(), &rows.kept, kept * sizeof(float));
         joint.wrench = rows.wrench;
+        joint.before = rows.before;
+        joint.total = rows.total;
     }
 
   private:
@@ -363,7 +367,7 @@ JointErrors errors(const JointRecord<D>& joint, const JointPose<D>& pose) {
 
 #define CAROM_INSTANTIATE(D)                                                            \
     template JointPose<D> pose_of(const JointRecord<D>&, std::span<const BodyState<D>>, \
-                                  std::span<const BodyMass<D>>);                        \
+                                  std::span<const BodyMass<D>>, bool);                  \
     template Measured<D> measure(const DriveSettings&, const JointPose<D>&);            \
     template JointErrors errors(const JointRecord<D>&, const JointPose<D>&);            \
     template const std::array<JointLoader<D>, layouts<D>.size()>& joint_loaders<D>();

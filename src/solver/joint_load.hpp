@@ -34,9 +34,10 @@ struct JointPose {
     }
 };
 
+/// In the plane the angle takes some time, and only coordinates want it.
 template <int D>
 JointPose<D> pose_of(const JointRecord<D>& joint, std::span<const BodyState<D>> states,
-                     std::span<const BodyMass<D>> masses);
+                     std::span<const BodyMass<D>> masses, bool with_angle = true);
 
 /// A coordinate of a joint, its rate, and the axis of its row.
 template <int D>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/drive.hpp"
 #include "solver/joint_rows.hpp"
 
 /// One pass over a joint, part by part. Each part says what its kept impulses are on the bodies now, and
@@ -17,8 +18,8 @@ struct JointPass {
 
     CAROM_INLINE JointPass(JointRows<D, F, L>& all, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
                            const Weight<D, F>& wb, const JointStep<F>& sub)
-        : rows(all), link{a, b, wa, wb, all.wrench}, step(sub), turn_a(a), turn_b(b) {
-        if constexpr (has_anchors(L)) g = geometry<biased>(rows.anchors, turn_a, turn_b, a, b, sub.h);
+        : rows(all), link{a, b, wa, wb, all.wrench}, step(sub), turn_a(a, sub.h), turn_b(b, sub.h) {
+        if constexpr (has_anchors(L)) g = geometry<biased>(rows.anchors, turn_a, turn_b, a, b);
     }
 
     CAROM_INLINE void run() {
@@ -28,21 +29,45 @@ struct JointPass {
         drive<2>();
         solve_angular();
         solve_linear();
+        if constexpr (!biased) add(rows.total, rows.wrench);
     }
 
-    /// Replaces what the kept impulses were on the bodies by what they are along the new directions.
+    /// Replaces what the kept impulses were on the bodies by what they are along the new directions, as far
+    /// as they are steady (see `steady_share`).
     CAROM_INLINE void re_aim() {
+        const Wrench<D, F> old = rows.wrench;
+        keep(steady_share(link.likeness(old, old), link.likeness(old, rows.before)));
+        rows.before = old;
         Wrench<D, F> now = linear_wrench();
         add(now, angular_wrench());
         if constexpr (L.drive_count > 0) add(now, wrench_of<0>(rows.kept.drives[0].sum()));
         if constexpr (L.drive_count > 1) add(now, wrench_of<1>(rows.kept.drives[1].sum()));
         if constexpr (L.drive_count > 2) add(now, wrench_of<2>(rows.kept.drives[2].sum()));
-        const Wrench<D, F>& old = rows.wrench;
         link.add({now.force - old.force, now.on_a - old.on_a, now.on_b - old.on_b});
         rows.wrench = now;
     }
 
   private:
+    /// Keeps only a share of the impulses.
+    CAROM_INLINE void keep(F share) {
+        auto& kept = rows.kept;
+        if constexpr (L.linear == LinearPart::line) {
+            for (F& p : kept.linear) p = p * share;
+        } else if constexpr (L.linear != LinearPart::none) {
+            kept.linear = kept.linear * share;
+        }
+        if constexpr (L.angular == AngularPart::held) {
+            kept.angular.spring = kept.angular.spring * share;
+            kept.angular.friction = kept.angular.friction * share;
+        } else if constexpr (L.angular != AngularPart::none) {
+            kept.angular = kept.angular * share;
+        }
+        if constexpr (L.drive_count > 0) {
+            for (DriveImpulses<F>& d : kept.drives)
+                d = {d.spring * share, d.motor * share, d.low * share, d.high * share};
+        }
+    }
+
     CAROM_INLINE static void add(Wrench<D, F>& sum, const Wrench<D, F>& w) {
         sum.force += w.force;
         sum.on_a = sum.on_a + w.on_a;
@@ -71,9 +96,7 @@ struct JointPass {
         }
     }
 
-    CAROM_INLINE Turned<D, F> across(int i) const {
-        return turned<biased>(rows.linear.across[i], turn_a, step.h);
-    }
+    CAROM_INLINE Turned<D, F> across(int i) const { return turned<biased>(rows.linear.across[i], turn_a); }
 
     CAROM_INLINE void solve_linear() {
         if constexpr (L.linear == LinearPart::point) {
@@ -154,8 +177,8 @@ struct JointPass {
         }
     }
 
-    CAROM_INLINE Turned<3, F> axis_a() const { return turned<biased>(rows.angular.axis_a, turn_a, step.h); }
-    CAROM_INLINE Turned<3, F> axis_b() const { return turned<biased>(rows.angular.axis_b, turn_b, step.h); }
+    CAROM_INLINE Turned<3, F> axis_a() const { return turned<biased>(rows.angular.axis_a, turn_a); }
+    CAROM_INLINE Turned<3, F> axis_b() const { return turned<biased>(rows.angular.axis_b, turn_b); }
 
     struct SquareAxes {
         Vec<3, F> normal_middle, normal_end;
@@ -247,7 +270,7 @@ struct JointPass {
         } else if constexpr (L.drives[i] == DriveKind::turn && D == 2) {
             return {};
         } else {
-            return turned<biased>(rows.drives[i].axis, turn_a, step.h);
+            return turned<biased>(rows.drives[i].axis, turn_a);
         }
     }
 
@@ -310,23 +333,24 @@ struct JointPass {
             auto& base = rows.drives[i];
             DriveImpulses<F>& kept = rows.kept.drives[i];
             const Turned<D, F> n = direction<i>();
-            const F mass = effective_mass<i>(n), now = coordinate<i>(n);
+            const F mass = effective_mass<i>(n), now = coordinate<i>(n), mobility = inverse_or_zero(mass);
+            F rate = speed<i>(n);
             const auto set = [&](F& impulse, F next, F sign) CAROM_INLINE_LAMBDA {
-                link.push(along<i>(n, sign * (next - impulse)));
+                const F change = sign * (next - impulse);
+                link.push(along<i>(n, change));
+                rate = rate + mobility * change;
                 impulse = next;
             };
             const SpringRow<F>& spring = base.spring;
             if constexpr (biased) base.offset = spring.pull * (now - base.rest) + spring.keep * base.before;
             set(kept.spring,
-                cut_to(spring.keep * kept.spring - mass * (base.offset + spring.keep * speed<i>(n)),
-                       spring.most),
+                cut_to(spring.keep * kept.spring - mass * (base.offset + spring.keep * rate), spring.most),
                 F(1));
-            set(kept.motor, cut_to(kept.motor - mass * (speed<i>(n) - base.motor_speed), base.motor_most),
-                F(1));
+            set(kept.motor, cut_to(kept.motor - mass * (rate - base.motor_speed), base.motor_most), F(1));
             const auto ranged = base.high > base.low;
             const F above = now - base.low, below = select(ranged, base.high - now, F(1e18f));
-            set(kept.low, limit(above, speed<i>(n), mass, kept.low, ranged), F(1));
-            set(kept.high, limit(below, -speed<i>(n), mass, kept.high, base.low > F(-2e18f)), F(-1));
+            set(kept.low, limit(above, rate, mass, kept.low, ranged), F(1));
+            set(kept.high, limit(below, -rate, mass, kept.high, base.low > F(-2e18f)), F(-1));
             if constexpr (biased) {
                 const F error = select(ranged, minimum(above, F(0)) - minimum(below, F(0)), above);
                 link.shift(along<i>(n, -(mass * to_mend(error))));

@@ -12,7 +12,7 @@
 /// velocities of its end are what the rows constrain: the work that a joint does is then zero to second order
 /// in the length of a sub-step, so that what swings on joints keeps its energy. As the solver warm-starts a
 /// sub-step with the change of velocity of the one before, a joint first turns its impulses into their new
-/// directions (`re_aim`).
+/// directions (`re_aim`). Of an impulse that was a blow, nothing is kept: it would strike again.
 ///
 /// Errors of position are put right by moving the bodies, not by giving them a velocity: a velocity would be
 /// kept by warm starting until all joints of a chain have agreed to take it back, and long chains swing up
@@ -145,6 +145,8 @@ template <int D, class F, Layout L>
 struct JointRows {
     KeptImpulses<D, F, L> kept{};
     Wrench<D, F> wrench{};  ///< what the impulses are on the bodies: as they were last applied
+    Wrench<D, F> before{};  ///< the same in the sub-step before
+    Wrench<D, F> total{};   ///< sum over the sub-steps
     [[no_unique_address]] std::conditional_t<has_anchors(L), Anchors<D, F>, Nothing<6>> anchors{};
     [[no_unique_address]] LinearBase<D, F, L.linear> linear{};
     [[no_unique_address]] AngularBase<D, F, L.angular> angular{};
@@ -173,9 +175,16 @@ template <int D, class F>
 struct Turning {
     Angular<D, F> angle, spin;
     TurnSeries<F> series;
+    F ahead;  ///< time in which arms are turned on, s
 
-    CAROM_INLINE explicit Turning(const Motion<D, F>& m)
-        : angle(m.turned), spin(m.w), series(angular_dot(m.turned, m.turned)) {}
+    /// What turns by so much in a sub-step that it cannot be followed is not: beyond 0.2 rad, and less from
+    /// 0.14 rad on. With impulses and velocities along the same directions, a pass takes energy away whatever
+    /// happens.
+    CAROM_INLINE Turning(const Motion<D, F>& m, F h)
+        : angle(m.turned), spin(m.w), series(angular_dot(m.turned, m.turned)) {
+        const F squared = h * h * angular_dot(m.w, m.w);
+        ahead = h * maximum(F(0), minimum(F(1), F(2) - F(50) * squared));
+    }
 
     /// By how much the vector changed as it turned.
     CAROM_INLINE Vec<D, F> change(const Vec<D, F>& v) const {
@@ -203,8 +212,8 @@ CAROM_INLINE Turned<D, F> turned(const Vec<D, F>& now, const Angular<D, F>& spin
 }
 
 template <bool biased, int D, class F>
-CAROM_INLINE Turned<D, F> turned(const Vec<D, F>& start, const Turning<D, F>& turning, F h) {
-    return turned<biased, D, F>(start + turning.change(start), turning.spin, h);
+CAROM_INLINE Turned<D, F> turned(const Vec<D, F>& start, const Turning<D, F>& turning) {
+    return turned<biased, D, F>(start + turning.change(start), turning.spin, turning.ahead);
 }
 
 /// By how much b has turned more than a: log(exp(θb) exp(−θa)) to second order.
@@ -244,6 +253,11 @@ struct Link {
         b.moved += each(wb.mass, w.force);
         b.turned = b.turned + wb.inertia * w.on_b;
     }
+    /// How alike two impulses are, in what they do to the bodies: their product with the inverse masses.
+    CAROM_INLINE F likeness(const Wrench<D, F>& s, const Wrench<D, F>& t) const {
+        return dot(s.force, each(wa.mass + wb.mass, t.force)) + angular_dot(s.on_a, wa.inertia * t.on_a) +
+               angular_dot(s.on_b, wb.inertia * t.on_b);
+    }
     CAROM_INLINE Angular<D, F> spin() const { return b.w - a.w; }
     CAROM_INLINE Inertia<D, F> angular_compliance() const { return wa.inertia + wb.inertia; }
 };
@@ -271,14 +285,13 @@ struct Geometry {
 
 template <bool biased, int D, class F>
 CAROM_INLINE Geometry<D, F> geometry(const Anchors<D, F>& base, const Turning<D, F>& a,
-                                     const Turning<D, F>& b, const Motion<D, F>& ma, const Motion<D, F>& mb,
-                                     F h) {
+                                     const Turning<D, F>& b, const Motion<D, F>& ma, const Motion<D, F>& mb) {
     Geometry<D, F> g;
     const Vec<D, F> change_a = a.change(base.arm_a), change_b = b.change(base.arm_b);
-    g.arm_a = turned<biased, D, F>(base.arm_a + change_a, a.spin, h);
-    g.arm_b = turned<biased, D, F>(base.arm_b + change_b, b.spin, h);
+    g.arm_a = turned<biased, D, F>(base.arm_a + change_a, a.spin, a.ahead);
+    g.arm_b = turned<biased, D, F>(base.arm_b + change_b, b.spin, b.ahead);
     g.gap = base.gap + (mb.moved - ma.moved) + (change_b - change_a);
-    const Vec<D, F> way = h * relative_velocity(ma, mb, g.arm_a.now, g.arm_b.now);
+    const Vec<D, F> way = minimum(a.ahead, b.ahead) * relative_velocity(ma, mb, g.arm_a.now, g.arm_b.now);
     g.gap_middle = biased ? g.gap + F(0.5f) * way : g.gap - F(0.5f) * way;
     g.gap_end = biased ? g.gap + way : g.gap;
     return g;

@@ -9,16 +9,42 @@
 namespace carom::detail {
 
 template <int D>
-void JointSolver<D>::prepare(const JointInput<D>& input) {
+void JointSolver<D>::plan(const JointInput<D>& input) {
     batches_.clear();
-    couplings_.prepare(input);
+    joint_.clear();
+    couplings_.plan(input);
     if (input.active.empty()) return;
     step_ = joint_step(input.substep);
     wide_ = &joint_programs<D>(lane_width());
     colour(input);
     make_batches(input);
-    fill(input);
-    for (const Batch& batch : batches_) program(batch).start(span(batch), input.bodies);
+}
+
+template <int D>
+template <class Visit>
+void JointSolver<D>::each_share(const Crew& crew, bool writes_bodies, Visit&& visit) const {
+    constexpr std::size_t least_blocks = 4;
+    for (std::size_t i = 0; i < batches_.size(); ++i) {
+        const Batch& batch = batches_[i];
+        const bool one_by_one = writes_bodies && batch.colour == overflow;
+        const Part part =
+            one_by_one ? Part{0, crew.is_first() ? batch.blocks : 0} : crew.part(batch.blocks, least_blocks);
+        if (part.size() > 0) visit(batch, part);
+        const bool last_of_colour = i + 1 == batches_.size() || batches_[i + 1].colour != batch.colour;
+        if (writes_bodies && last_of_colour) crew.meet();
+    }
+}
+
+template <int D>
+void JointSolver<D>::prepare(const JointInput<D>& input, const Crew& crew) {
+    each_share(crew, false, [&](const Batch& batch, const Part& part) { fill(input, batch, part); });
+    // Bodies are loaded, and rows that others filled are read.
+    crew.meet();
+    if (crew.is_first()) couplings_.prepare(input);
+    crew.meet();
+    each_share(crew, true, [&](const Batch& batch, const Part& part) {
+        program(batch).start(span(batch, part), input.bodies);
+    });
 }
 
 /// Greedy colouring in the order of the joints: the first colour that neither body has yet.
@@ -51,7 +77,7 @@ void JointSolver<D>::make_batches(const JointInput<D>& input) {
             if (count == 0) continue;
             const std::uint32_t width = c == overflow ? 1 : static_cast<std::uint32_t>(wide_->width);
             const std::size_t of_batch = (count + width - 1) / width;
-            batches_.push_back({layout, width, places, blocks, of_batch, floats});
+            batches_.push_back({c, layout, width, places, blocks, of_batch, floats});
             count = static_cast<std::uint32_t>(places);  // from now on the next free place
             places += of_batch * width;
             blocks += of_batch;
@@ -74,21 +100,20 @@ void JointSolver<D>::make_batches(const JointInput<D>& input) {
 }
 
 template <int D>
-void JointSolver<D>::fill(const JointInput<D>& input) {
-    for (const Batch& batch : batches_) {
-        const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
-        for (std::size_t block = 0; block < batch.blocks; ++block) {
-            float* to = rows(batch) + block * loader.fields * batch.width;
-            for (std::size_t lane = 0; lane < batch.width; ++lane) {
-                const std::size_t place = batch.first_place + block * batch.width + lane;
-                const bool fixed =
-                    a_[place] < input.bodies.first_movable || b_[place] < input.bodies.first_movable;
-                some_fixed_[batch.first_block + block] |= fixed ? 1 : 0;
-                if (joint_[place] == none) continue;
-                JointRecord<D>& joint = input.joints[joint_[place]];
-                loader.load(joint, pose_of<D>(joint, input.states, input.masses), input.states, input.masses,
-                            input.substep, to + lane, batch.width);
-            }
+void JointSolver<D>::fill(const JointInput<D>& input, const Batch& batch, const Part& part) {
+    const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
+    const bool has_drives = layouts<D>[batch.layout].drive_count > 0;
+    for (std::size_t block = part.begin; block < part.end; ++block) {
+        float* to = rows(batch) + block * loader.fields * batch.width;
+        for (std::size_t lane = 0; lane < batch.width; ++lane) {
+            const std::size_t place = batch.first_place + block * batch.width + lane;
+            const bool fixed =
+                a_[place] < input.bodies.first_movable || b_[place] < input.bodies.first_movable;
+            some_fixed_[batch.first_block + block] |= fixed ? 1 : 0;
+            if (joint_[place] == none) continue;
+            JointRecord<D>& joint = input.joints[joint_[place]];
+            loader.load(joint, pose_of<D>(joint, input.states, input.masses, has_drives), input.states,
+                        input.masses, input.substep, to + lane, batch.width);
         }
     }
 }
@@ -100,36 +125,48 @@ const JointProgram<D>& JointSolver<D>::program(const Batch& batch) const {
 }
 
 template <int D>
-JointSpan JointSolver<D>::span(const Batch& batch) {
-    return {rows(batch), a_.data() + batch.first_place, b_.data() + batch.first_place,
-            some_fixed_.data() + batch.first_block, batch.blocks};
+JointSpan JointSolver<D>::span(const Batch& batch, const Part& part) {
+    const std::size_t place = batch.first_place + part.begin * batch.width;
+    return {rows(batch) + part.begin * joint_loaders<D>()[batch.layout].fields * batch.width,
+            a_.data() + place, b_.data() + place, some_fixed_.data() + batch.first_block + part.begin,
+            part.size()};
 }
 
 template <int D>
-void JointSolver<D>::solve(const RecordView<D>& bodies) {
-    couplings_.solve(bodies);
-    for (const Batch& batch : batches_) program(batch).solve(span(batch), bodies, step_);
+void JointSolver<D>::solve(const RecordView<D>& bodies, const Crew& crew) {
+    if (couplings_.any()) {
+        if (crew.is_first()) couplings_.solve(bodies);
+        crew.meet();
+    }
+    each_share(crew, true, [&](const Batch& batch, const Part& part) {
+        program(batch).solve(span(batch, part), bodies, step_);
+    });
 }
 
 template <int D>
-void JointSolver<D>::relax(const RecordView<D>& bodies) {
-    couplings_.relax(bodies);
-    for (const Batch& batch : batches_) program(batch).relax(span(batch), bodies, step_);
+void JointSolver<D>::relax(const RecordView<D>& bodies, const Crew& crew) {
+    if (couplings_.any()) {
+        if (crew.is_first()) couplings_.relax(bodies);
+        crew.meet();
+    }
+    each_share(crew, true, [&](const Batch& batch, const Part& part) {
+        program(batch).relax(span(batch, part), bodies, step_);
+    });
 }
 
 template <int D>
-void JointSolver<D>::store(const JointInput<D>& input) const {
-    couplings_.store(input);
-    for (const Batch& batch : batches_) {
+void JointSolver<D>::store(const JointInput<D>& input, const Crew& crew) const {
+    if (crew.is_first()) couplings_.store(input);
+    each_share(crew, false, [&](const Batch& batch, const Part& part) {
         const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
-        for (std::size_t i = 0; i < batch.blocks * batch.width; ++i) {
+        const std::size_t width = batch.width;
+        for (std::size_t i = part.begin * width; i < part.end * width; ++i) {
             const std::uint32_t joint = joint_[batch.first_place + i];
             if (joint == none) continue;
-            loader.store(input.joints[joint],
-                         rows(batch) + i / batch.width * loader.fields * batch.width + i % batch.width,
-                         batch.width);
+            loader.store(input.joints[joint], rows(batch) + i / width * loader.fields * width + i % width,
+                         width);
         }
-    }
+    });
 }
 
 template class JointSolver<2>;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/crew.hpp"
 #include "solver/couplings.hpp"
 #include "solver/joint_input.hpp"
 #include "solver/joint_passes.hpp"
@@ -16,13 +17,20 @@ namespace carom::detail {
 template <int D>
 class JointSolver {
   public:
-    /// Takes the joints up and applies the impulses that they have kept.
-    void prepare(const JointInput<D>& input);
+    /// Takes the joints up: colours them and makes room for their rows.
+    void plan(const JointInput<D>& input);
+    /// So few that they are not worth several workers.
+    bool is_small() const { return joint_.size() < 256; }
+
+    // What each worker does; all have to have met before, and have met after it.
+
+    /// Fills the rows and applies the impulses that the joints have kept.
+    void prepare(const JointInput<D>& input, const Crew& crew);
     /// One pass at the start of a sub-step, and one after positions were integrated.
-    void solve(const RecordView<D>& bodies);
-    void relax(const RecordView<D>& bodies);
+    void solve(const RecordView<D>& bodies, const Crew& crew);
+    void relax(const RecordView<D>& bodies, const Crew& crew);
     /// Gives the records their impulses.
-    void store(const JointInput<D>& input) const;
+    void store(const JointInput<D>& input, const Crew& crew) const;
 
   private:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -31,6 +39,7 @@ class JointSolver {
 
     /// Joints of one colour and layout, from a place on.
     struct Batch {
+        int colour = 0;
         std::uint32_t layout = 0;
         std::uint32_t width = 1;
         std::size_t first_place = 0, first_block = 0, blocks = 0;
@@ -42,9 +51,13 @@ class JointSolver {
 
     void colour(const JointInput<D>& input);
     void make_batches(const JointInput<D>& input);
-    void fill(const JointInput<D>& input);
+    /// `visit(batch, blocks)` for a share of the blocks of each batch. Where bodies are written the workers
+    /// wait for one another after each colour, and the first one does the overflow alone.
+    template <class Visit>
+    void each_share(const Crew& crew, bool writes_bodies, Visit&& visit) const;
+    void fill(const JointInput<D>& input, const Batch& batch, const Part& part);
     const JointProgram<D>& program(const Batch& batch) const;
-    JointSpan span(const Batch& batch);
+    JointSpan span(const Batch& batch, const Part& part);
     float* rows(const Batch& batch) { return lines_[0].floats.data() + batch.first_float; }
     const float* rows(const Batch& batch) const { return lines_[0].floats.data() + batch.first_float; }
 

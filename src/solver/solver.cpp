@@ -107,7 +107,8 @@ void Solver<D>::run(const SolverInput<D>& input) {
     set_lengths(input);
     make_room();
     set_free_axes(input);
-    const bool alone = is_small() && input.active_joints.size() < 256;
+    joints_.plan(joint_input(input));
+    const bool alone = is_small() && joints_.is_small();
     run_crew(input.scheduler, alone, [&](const Crew& crew) { work(input, crew); });
 }
 
@@ -116,8 +117,8 @@ void Solver<D>::run(const SolverInput<D>& input) {
 template <int D>
 void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
     load_bodies(input, crew);
-    crew.alone([&] { joints_.prepare(joint_input(input)); });  // and apply the impulses that they have kept
-    prepare_contacts(crew);                                    // the same
+    joints_.prepare(joint_input(input), crew);  // and apply the impulses that they have kept
+    prepare_contacts(crew);                     // the same
 
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin_warm(bodies, h_); });
     each_share(crew, false, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
@@ -130,10 +131,8 @@ void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
         find_impacts();
     });
     step_through(input.substeps, crew);
-    crew.alone([&] {
-        bounce(input);
-        joints_.store(joint_input(input));
-    });
+    crew.alone([&] { bounce(input); });
+    joints_.store(joint_input(input), crew);
     store_bodies(input, crew);
 }
 
@@ -141,7 +140,7 @@ template <int D>
 void Solver<D>::step_through(int substeps, const Crew& crew) {
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_velocities(bodies, h_); });
     for (int i = 0; i < substeps; ++i) {
-        crew.alone([&] { joints_.solve(view_); });
+        joints_.solve(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
         });
@@ -153,7 +152,7 @@ void Solver<D>::step_through(int substeps, const Crew& crew) {
             if (some_struck_) settle_struck<true>();
         });
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
-        crew.alone([&] { joints_.relax(view_); });
+        joints_.relax(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.relax(span, view_, sub_);
         });

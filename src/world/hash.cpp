@@ -148,7 +148,7 @@ struct Folder {
     void operator()(const JointRecord<D>& j) {
         all(j.body_a, j.body_b, j.layout, j.anchor_a, j.anchor_b, j.frame_a, j.frame_b, j.drives,
             j.held.linear, j.held.angular, j.held.friction, j.wrench.force, j.wrench.on_a, j.wrench.on_b,
-            j.kept);
+            j.before.force, j.before.on_a, j.before.on_b, j.kept);
     }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>
@@ -185,7 +185,7 @@ std::uint64_t World<D>::hash() const {
         fold.all(id, w.joints[id.index], joint.collide, joint.break_force, joint.break_torque);
     }
     for (const CouplingRecord<D>& c : w.couplings)
-        fold.all(c.joint, c.ends[0], c.ends[1], c.factors, c.sum, c.is_rope, c.kept);
+        fold.all(c.joint, c.ends[0], c.ends[1], c.factors, c.sum, c.is_rope, c.kept, c.before);
     for (std::uint32_t i = 0; i < w.contacts.size(); ++i) fold(w.current(i));
     fold.all(w.caches, w.sensor_pairs);
     return fold.hash.value();

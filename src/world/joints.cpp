@@ -49,12 +49,12 @@ void WorldState<D>::wake_jointed() {
 }
 
 template <int D>
-void WorldState<D>::break_joints() {
+void WorldState<D>::break_joints(double dt) {
     std::vector<std::uint32_t> broken;
     const auto check = [&](std::uint32_t i) {
         const JointDefinition<D>& joint = joint_definitions[i];
         if (std::isinf(joint.break_force) && std::isinf(joint.break_torque)) return;
-        const Load<D> load = joint_load(i);
+        const Load<D> load = joint_load(i, dt);
         const double force = length(load.force), torque = std::sqrt(angular_dot(load.torque, load.torque));
         if (force <= joint.break_force && torque <= joint.break_torque) return;
         events.joint_breaks.push_back(
@@ -68,14 +68,14 @@ void WorldState<D>::break_joints() {
     }
 }
 
-/// Force on b and torque about its anchor, from the impulses of the last sub-step.
+/// Force on b and torque about its anchor, on the average of the last step.
 template <int D>
-Load<D> WorldState<D>::joint_load(std::uint32_t joint) const {
-    if (last_step == 0) return {};
+Load<D> WorldState<D>::joint_load(std::uint32_t joint, double dt) const {
+    if (dt == 0) return {};
     const JointRecord<D>& j = joints[joint];
-    const double rate = definition.substeps / last_step;
-    const Vec<D> force = rate * narrow<double>(j.wrench.force);
-    const Angular<D> torque = narrow<double>(j.wrench.on_b) * rate;
+    const double rate = 1 / dt;
+    const Vec<D> force = rate * narrow<double>(j.total.force);
+    const Angular<D> torque = narrow<double>(j.total.on_b) * rate;
     return {force, torque - cross(joint_pose(joint).arm_b, force)};
 }
 
@@ -121,15 +121,15 @@ const CouplingRecord<D>* WorldState<D>::coupling_of(std::uint32_t joint) const {
 template <int D>
 void WorldState<D>::remove_joint(std::uint32_t joint) {
     const JointId<D> id = joint_slots.template id<JointId<D>>(joint);
-    for (std::size_t i = 0; i < joint_ids.size();) {
-        const std::uint32_t other = joint_ids[i].index;
+    for (std::size_t i = 0; i < couplings.size();) {
+        const std::uint32_t other = couplings[i].joint;
         const bool names_it = std::visit(
             [&](const auto& kind) {
                 if constexpr (requires { kind.joint_a; }) return kind.joint_a == id || kind.joint_b == id;
                 return false;
             },
             joint_definitions[other].kind);
-        names_it ? remove_joint(other) : void(++i);
+        names_it&& other != joint ? remove_joint(other) : void(++i);
     }
     std::erase_if(couplings, [&](const CouplingRecord<D>& c) { return c.joint == joint; });
     const JointRecord<D>& record = joints[joint];
@@ -439,11 +439,11 @@ double World<D>::angular_error(JointId<D> joint) const {
 
 template <int D>
 Vec<D> World<D>::joint_force(JointId<D> joint) const {
-    return state_->joint_load(state_->index(joint)).force;
+    return state_->joint_load(state_->index(joint), state_->last_step).force;
 }
 template <int D>
 Angular<D> World<D>::joint_torque(JointId<D> joint) const {
-    return state_->joint_load(state_->index(joint)).torque;
+    return state_->joint_load(state_->index(joint), state_->last_step).torque;
 }
 
 // The members defined in this file.
@@ -453,7 +453,7 @@ template class World<3>;
 #define CAROM_INSTANTIATE(D)                                   \
     template void detail::WorldState<D>::list_active_joints(); \
     template void detail::WorldState<D>::wake_jointed();       \
-    template void detail::WorldState<D>::break_joints();       \
+    template void detail::WorldState<D>::break_joints(double); \
     template void detail::WorldState<D>::remove_joints_of(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

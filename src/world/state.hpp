@@ -320,13 +320,13 @@ struct WorldState {
     // joints.cpp: what binds bodies.
     void list_active_joints();
     void wake_jointed();
-    void break_joints();
+    void break_joints(double dt);
     void remove_joint(std::uint32_t joint);
     void remove_joints_of(std::uint32_t body);
     std::uint32_t index(JointId<D> joint) const;
     const CouplingRecord<D>* coupling_of(std::uint32_t joint) const;
     JointPose<D> joint_pose(std::uint32_t joint) const { return pose_of<D>(joints[joint], states, masses); }
-    Load<D> joint_load(std::uint32_t joint) const;
+    Load<D> joint_load(std::uint32_t joint, double dt) const;
 
     // queries.cpp: questions between steps.
     bool is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const;

@@ -64,7 +64,7 @@ TEST(Fuzz, cases_that_were_wrong_are_right) {
                                   {3, 3, 28118},
                                   {3, 3, 180431}})
         EXPECT_EQ(fault_of_case<2>(a, b, n), "") << a << ", " << b << ", " << n;
-    for (const auto& [a, b, n] : {Case{1, 3, 538}, {1, 3, 1419}, {3, 3, 564}})
+    for (const auto& [a, b, n] : {Case{0, 3, 217275}, {1, 3, 538}, {1, 3, 1419}, {3, 3, 564}})
         EXPECT_EQ(fault_of_case<3>(a, b, n), "") << a << ", " << b << ", " << n;
 }
 

@@ -31,7 +31,7 @@ TEST(SceneErrors, document) {
         {scene_text(2, "\"bodies\": {}"), "bodies: an object is not a list"},
         {scene_text(2, "\"bodies\": [7]"), "bodies[0]: 7 is not an object"},
         {scene_text(2, "\"name\": 5"), "name: 5 is not a text"},
-        {scene_text(2, "\"joints\": [{}]"), "joints[0]: joints are not supported by this version"},
+        {scene_text(2, "\"joints\": [{}]"), "joints[0]: \"type\" is missing"},
         {scene_text(2, "\"joints\": 0"), "joints: 0 is not a list"},
         {scene_text(2, "\"od d\": 0"), "[\"od d\"]: this key is not known"},
     });

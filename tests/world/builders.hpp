@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -17,6 +18,13 @@ constexpr double frame_time = 1.0 / 60;
 
 /// What a typed test suite is written over, to run in the plane and in space.
 using BothDimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+
+/// How often a test of random cases tries: as often as it says, or as the environment variable CAROM_TRIALS
+/// asks.
+inline int trials(int own) {
+    const char* asked = std::getenv("CAROM_TRIALS");
+    return asked ? std::atoi(asked) : own;
+}
 
 /// A vector of either dimension: z is left out in the plane.
 template <int D>

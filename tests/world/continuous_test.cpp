@@ -93,7 +93,8 @@ Angular<D> any_spin(Random& random) {
 TYPED_TEST(Continuous, nothing_passes_through_a_thin_wall) {
     constexpr int D = TypeParam::value;
     Random random(3);
-    for (int trial = 0; trial < 600; ++trial) {
+    const int count = trials(600);
+    for (int trial = 0; trial < count; ++trial) {
         World<D> world(no_gravity<D>());
         world.add_body(fixed_of<D>(wall(TypeParam{}, trial % 3)));
         BodyDefinition<D> body = body_of<D>(bullet(TypeParam{}, random));

@@ -81,7 +81,8 @@ Ride ride(const Floor& floor, int kind, double speed, double friction, int steps
 TYPED_TEST(Surfaces, tiles_are_felt_no_more_than_a_single_floor) {
     constexpr int D = TypeParam::value;
     std::mt19937_64 random(7);
-    for (int run = 0; run < 120; ++run) {
+    const int count = trials(120);
+    for (int run = 0; run < count; ++run) {
         const int kind = run % 4;
         const double speed = std::exp(5 * share(random)), friction = run % 3 == 0 ? 0.0 : 0.3 * share(random);
         const int steps = std::min(90, static_cast<int>(40 / speed / frame_time));

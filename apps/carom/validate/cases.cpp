@@ -16,6 +16,10 @@ std::span<const Case> validation_cases() {
         {"B6", "a ball bounces", bouncing_ball},
         {"B7", "a rod strikes a smooth floor", rod_strikes},
         {"B15", "a pyramid 1e7 m from the origin", far_away},
+        {"C1", "a pendulum, and a conical one", pendulum},
+        {"C2", "a double pendulum", double_pendulum},
+        {"C3", "a chain of ten rods, let go from the horizontal", falling_chain},
+        {"C5", "simple machines: pulley, gear, spring, lever", simple_machines},
     };
     return cases;
 }

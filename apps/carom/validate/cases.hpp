@@ -17,5 +17,9 @@ std::vector<Result> roll_down();
 std::vector<Result> bouncing_ball();
 std::vector<Result> rod_strikes();
 std::vector<Result> far_away();
+std::vector<Result> pendulum();
+std::vector<Result> double_pendulum();
+std::vector<Result> falling_chain();
+std::vector<Result> simple_machines();
 
 }  // namespace carom::app

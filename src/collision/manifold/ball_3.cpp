@@ -85,9 +85,16 @@ Nearest3 point_polyhedron(const Pair3& pair, const Search3& search) {
     const Vec3 outward = rotate(pair.b_in_a.rotation, core.normals[face]);
     if (gap <= 0 || gap > search.limit || over_face(core, face, p)) return against(pair.a.a, outward, gap);
 
-    // Outside, and not over the face that is furthest below: then the closest point lies on an edge.
+    // Outside, and not over the face that is furthest below: then the closest point lies on an edge. Or on
+    // another face, where several are furthest below but for the unevenness of the hull.
     Vec3 closest{};
     double least = 1e300;
+    for (std::size_t f = 0; f < core.normals.size(); ++f) {
+        const double height = dot(core.normals[f], p) - core.offsets[f];
+        if (height < gap - 2 * core.unevenness || !over_face(core, f, p)) continue;
+        closest = p - height * core.normals[f];
+        least = height * height;
+    }
     for (const Polyhedron::Edge& edge : core.edges) {
         const Vec3 q = closest_on_segment(core.vertices[edge.from], core.vertices[edge.to], p);
         if (length_squared(p - q) < least) {
