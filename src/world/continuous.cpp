@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/terrain.hpp"
 #include "math/trig.hpp"
 #include "world/meeting.hpp"
 #include "world/state.hpp"
@@ -137,9 +138,44 @@ void WorldState<D>::list_fast_contacts() {
     std::ranges::sort(fast);
     fixed_contacts.clear();
     if (fast.empty()) return;
-    for (const std::uint32_t body : fast)
+    for (const std::uint32_t body : fast) {
         each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
+        list_strays(body);
+    }
     sort_fixed_contacts();
+}
+
+/// A blow may throw a body to where its fat box does not reach, past shapes with which it is no pair. Lists
+/// the fixed ones in the way of its cores; one-way shapes let pass whom they did not see come.
+template <int D>
+void WorldState<D>::list_strays(std::uint32_t body) {
+    const Transform<D> start = frame(before[place[body]], masses[body]), end = frame_of(body);
+    for (const ShapeId<D>& id : infos[body].shapes) {
+        const ShapeRecord<D>& own = shapes[id.index];
+        const auto way_in = [&](const Transform<D>& placed) {
+            const Vec<D> first = apply_inverse(placed, apply(start, own.core));
+            const Vec<D> last = apply_inverse(placed, apply(end, own.core));
+            Aabb<D> box;
+            for (int i = 0; i < D; ++i) {
+                box.lower[i] = std::min(first[i], last[i]) - own.core_radius;
+                box.upper[i] = std::max(first[i], last[i]) + own.core_radius;
+            }
+            return box;
+        };
+        const auto add = [&](std::uint32_t other, std::uint32_t facet) {
+            if (!pairs.contains(PairKey::of(id.index, other, facet)))
+                fixed_contacts.push_back({body, id.index, other, facet, ContactRecord<D>::nowhere});
+        };
+        trees[of_fixed].query(OuterBox<D>(way_in({})), [&](std::uint32_t other) {
+            const ShapeRecord<D>& obstacle = shapes[other];
+            const bool blocks = !company[id.index].senses && !company[other].senses &&
+                                !obstacle.definition->one_way && may_meet(id.index, other);
+            if (!blocks) return;
+            if (obstacle.shape.kind != ShapeKind::terrain) return add(other, no_part);
+            obstacle.shape.terrain->query(way_in(frame_of(obstacle.body)),
+                                          [&](std::uint32_t facet) { add(other, facet); });
+        });
+    }
 }
 
 /// The solver keeps to the points where bodies first meet; what a body does after that within the step, as it
@@ -157,8 +193,9 @@ void WorldState<D>::stop_at_obstacles() {
     };
     list_fast_contacts();
     for (const FixedContact& f : fixed_contacts) {
-        const ContactRecord<D>& c = contacts[f.contact];
-        if (!lets_pass(c, f.body, f.other)) stop_at(f.body, f.shape, f.other, c.facet);
+        const bool seen = f.contact != ContactRecord<D>::nowhere;
+        if (!seen || !lets_pass(contacts[f.contact], f.body, f.other))
+            stop_at(f.body, f.shape, f.other, f.facet);
     }
     if (bullets > 0) stop_bullets();
 }

@@ -273,6 +273,7 @@ struct WorldState {
     // continuous.cpp: what is fast.
     void meet_ahead(ContactRecord<D>& contact, const ContactCache<D>& cache, double dt) const;
     void list_fast_contacts();
+    void list_strays(std::uint32_t body);
     void stop_at_obstacles();
     void stop_bullets();
     void stop_at(std::uint32_t body, std::uint32_t shape, std::uint32_t other, std::uint32_t facet);

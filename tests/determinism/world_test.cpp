@@ -78,7 +78,7 @@ World<D> crowd() {
         Geometry<D> geometry = cube<D>(0.5);
         if (i % 5 == 1) geometry = Ball{0.25};
         if (i % 5 == 2) geometry = Capsule<D>{-vec<D>(0.2, 0), vec<D>(0.2, 0), 0.15};
-        BodyDefinition<D> d = body_of<D>(geometry, vec<D>(0.6 * (i % 20), 0.3 + 0.6 * (i / 20)));
+        BodyDefinition<D> d = body_of<D>(geometry, vec<D>(0.53 * (i % 20), 0.27 + 0.53 * (i / 20)));
         d.position += random.in_cube<D>(0.02);
         d.bullet = i % 50 == 0;
         world.add_body(d);
@@ -89,12 +89,12 @@ World<D> crowd() {
 TYPED_TEST(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
     constexpr int D = TypeParam::value;
     World<D> alone = crowd<D>();
-    run(alone, 60);
-    EXPECT_GT(alone.counts().contacts, 400) << "enough that several threads are used";
-    for (const int threads : {2, 3, 4, 8}) {
+    run(alone, 20);
+    EXPECT_GT(alone.counts().contacts, 300) << "enough that several threads are used";
+    for (const int threads : {2, 4}) {
         World<D> world = crowd<D>();
         world.set_scheduler(make_thread_pool(threads));
-        run(world, 60);
+        run(world, 20);
         EXPECT_EQ(world.hash(), alone.hash()) << threads;
     }
 }
