@@ -17,7 +17,8 @@ class Scheduler {
     virtual int workers() const = 0;
 
     /// Calls `task(begin, end)` for stretches that cover 0 … count once, on any workers and in any order, and
-    /// returns when all calls have returned. Stretches shorter than `grain` are not worth a worker.
+    /// returns when all calls have returned. Stretches shorter than `grain` are not worth a worker. A pool
+    /// throws what one of the calls threw; those that a step makes throw nothing.
     virtual void run_range(std::size_t count, std::size_t grain,
                            const std::function<void(std::size_t begin, std::size_t end)>& task) = 0;
 

@@ -1,6 +1,6 @@
 #include <atomic>
 #include <cstdint>
-#include <stdexcept>
+#include <exception>
 #include <string>
 #include <thread>
 #include <vector>
@@ -35,11 +35,18 @@ class ThreadPool : public Scheduler {
         // A few stretches a worker, so that one that is late does not keep the others waiting.
         const std::size_t stretches = std::min(most, 4 * static_cast<std::size_t>(workers()));
         std::atomic<std::size_t> next{0};
+        std::atomic<bool> failed{false};
+        std::exception_ptr error;
         const auto work = [&](int) {
-            for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < stretches;)
-                task(count * i / stretches, count * (i + 1) / stretches);
+            try {
+                for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < stretches;)
+                    task(count * i / stretches, count * (i + 1) / stretches);
+            } catch (...) {
+                if (!failed.exchange(true)) error = std::current_exception();
+            }
         };
         run_on_all(std::ref(work));
+        if (error) std::rethrow_exception(error);
     }
 
     void run_on_all(const std::function<void(int)>& task) override {

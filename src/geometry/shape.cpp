@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <span>
 
 #include "geometry/hull.hpp"
@@ -80,7 +79,7 @@ std::shared_ptr<const Polytope<D>> shared_core(std::span<const Vec<D>> points, c
     thread_local std::array<Recent, 8> recent;
     thread_local std::size_t oldest = 0;
     const auto same_bits = [](const auto& a, const auto& b) {
-        return a.size_bytes() == b.size_bytes() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+        return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
     };
     for (const Recent& r : recent) {
         if (!same_bits(std::span(r.points), points) ||

@@ -94,6 +94,17 @@ Rotation<D> exp_rotation(const Angular<D>& v) {
     }
 }
 
+/// How far a point at distance 1 from the axis is moved by the rotation that leads from one to the other: the
+/// chord 2 sin θ/2. In space the vector part of p⁻¹q has the length sin θ/2, in the plane |q − p| is the
+/// chord.
+inline double chord_between(const Rotation<2>& from, const Rotation<2>& to) {
+    return length(Vec<2>{to.c - from.c, to.s - from.s});
+}
+inline double chord_between(const Rotation<3>& from, const Rotation<3>& to) {
+    const Rotation<3> turn = inverse(from) * to;
+    return 2 * length(Vec<3>{turn.x, turn.y, turn.z});
+}
+
 /// One or the other; lane types overload this with a mask for the condition.
 template <std::floating_point T>
 constexpr T select(bool condition, T yes, T no) {

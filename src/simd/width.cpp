@@ -31,6 +31,7 @@ bool can_run_lanes(int width) {
             return true;
         case 4:
             return __builtin_cpu_supports("sse4.2");
+#ifdef CAROM_WIDE_LANES
         case 8:
             return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                    __builtin_cpu_supports("bmi2");
@@ -38,6 +39,7 @@ bool can_run_lanes(int width) {
             return can_run_lanes(8) && __builtin_cpu_supports("avx512f") &&
                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+#endif
         default:
             return false;
     }

@@ -40,8 +40,7 @@ void JointSolver<D>::prepare(const JointInput<D>& input, const Crew& crew) {
     each_share(crew, false, [&](const Batch& batch, const Part& part) { fill(input, batch, part); });
     // Bodies are loaded, and rows that others filled are read.
     crew.meet();
-    if (crew.is_first()) couplings_.prepare(input);
-    crew.meet();
+    crew.alone([&] { couplings_.prepare(input); });
     each_share(crew, true, [&](const Batch& batch, const Part& part) {
         program(batch).start(span(batch, part), input.bodies);
     });
@@ -134,10 +133,7 @@ JointSpan JointSolver<D>::span(const Batch& batch, const Part& part) {
 
 template <int D>
 void JointSolver<D>::solve(const RecordView<D>& bodies, const Crew& crew) {
-    if (couplings_.any()) {
-        if (crew.is_first()) couplings_.solve(bodies);
-        crew.meet();
-    }
+    if (couplings_.any()) crew.alone([&] { couplings_.solve(bodies); });
     each_share(crew, true, [&](const Batch& batch, const Part& part) {
         program(batch).solve(span(batch, part), bodies, step_);
     });
@@ -145,10 +141,7 @@ void JointSolver<D>::solve(const RecordView<D>& bodies, const Crew& crew) {
 
 template <int D>
 void JointSolver<D>::relax(const RecordView<D>& bodies, const Crew& crew) {
-    if (couplings_.any()) {
-        if (crew.is_first()) couplings_.relax(bodies);
-        crew.meet();
-    }
+    if (couplings_.any()) crew.alone([&] { couplings_.relax(bodies); });
     each_share(crew, true, [&](const Batch& batch, const Part& part) {
         program(batch).relax(span(batch, part), bodies, step_);
     });

@@ -110,7 +110,6 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
     template void Solver<D>::make_room();                                     \
     template void Solver<D>::set_free_axes(const SolverInput<D>&);            \
     template void Solver<D>::load_bodies(const SolverInput<D>&, const Crew&); \
-    template bool Solver<D>::is_loaded(std::uint32_t) const;                  \
     template void Solver<D>::prepare_contacts(const Crew&);                   \
     template void Solver<D>::store_bodies(const SolverInput<D>&, const Crew&) const;
 CAROM_INSTANTIATE(2)

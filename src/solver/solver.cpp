@@ -156,12 +156,12 @@ void Solver<D>::step_through(int substeps, const Crew& crew) {
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.relax(span, view_, sub_);
         });
-        if (crew.is_first() && some_struck_) {
+        crew.alone([&] {
+            if (!some_struck_) return;
             settle_struck<false>();
             sum_struck();
             note_blows();
-        }
-        crew.meet();
+        });
         const bool last = i + 1 == substeps;
         each_body_share(crew, [&](const BodySpan<D>& bodies) {
             (last ? passes_->finish : passes_->finish_and_integrate_velocities)(bodies, h_);

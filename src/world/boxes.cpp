@@ -155,15 +155,7 @@ void WorldState<D>::keep_in_boxes(double dt) {
         const std::uint32_t body = awake[k];
         const BodyState<D>&from = before[k], &to = states[body];
         const Vec<D> way = from.velocity * dt, moved = to.position - from.position;
-        // A point at the distance r has turned by at most 2 |q − p| r (by |q − p| r in the plane).
-        double square;
-        const Rotation<D>&p = from.rotation, &q = to.rotation;
-        if constexpr (D == 2)
-            square = (q.c - p.c) * (q.c - p.c) + (q.s - p.s) * (q.s - p.s);
-        else
-            square = 4 * ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) + (q.z - p.z) * (q.z - p.z) +
-                          (q.w - p.w) * (q.w - p.w));
-        const double turned = std::sqrt(square) * masses[body].radius;
+        const double turned = masses[body].radius * chord_between(from.rotation, to.rotation);
         bool as_foreseen = true;
         for (int i = 0; i < D; ++i) {
             as_foreseen &= moved[i] - turned >= std::min(way[i], 0.0) - falling &&

@@ -70,19 +70,16 @@ void WorldState<D>::remove_contact(std::size_t contact) {
 
 template <int D>
 void WorldState<D>::remove_contacts_of(std::uint32_t body) {
-    for (const ShapeId<D>& id : infos[body].shapes)
-        each_contact_of_shape(id.index, [&](std::uint32_t contact) { picked.push_back(contact); });
+    each_contact_of(body, [&](std::uint32_t contact) { picked.push_back(contact); });
     remove_picked_contacts();
 }
 
 template <int D>
 void WorldState<D>::remove_contacts_between(std::uint32_t body, std::uint32_t other) {
-    for (const bool on_fixed : {false, true}) {
-        each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
-            const ContactRecord<D>& c = contacts[contact];
-            if (c.body_a == other || c.body_b == other) picked.push_back(contact);
-        });
-    }
+    each_contact_of(body, [&](std::uint32_t contact) {
+        const ContactRecord<D>& c = contacts[contact];
+        if (c.body_a == other || c.body_b == other) picked.push_back(contact);
+    });
     remove_picked_contacts();
 }
 
@@ -100,12 +97,10 @@ void WorldState<D>::remove_picked_contacts() {
 /// The shapes of the body, or its centre of mass, changed.
 template <int D>
 void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
-    for (const ShapeId<D>& id : infos[body].shapes) {
-        each_contact_of_shape(id.index, [&](std::uint32_t contact) {
-            stop_carrying(contact);
-            caches[contact].forget();
-        });
-    }
+    each_contact_of(body, [&](std::uint32_t contact) {
+        stop_carrying(contact);
+        caches[contact].forget();
+    });
 }
 
 /// The contact is to be looked at, in this step or the next. From then on its record is up to date.
@@ -163,11 +158,9 @@ void WorldState<D>::follow_bodies() {
     if (!changed) return;
     for (const std::uint32_t body : awake) {
         if (!solver.changed(body)) continue;
-        for (const bool on_fixed : {false, true}) {
-            each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
-                if (!contacts[contact].place) loosen(contact);
-            });
-        }
+        each_contact_of(body, [&](std::uint32_t contact) {
+            if (!contacts[contact].place) loosen(contact);
+        });
     }
 }
 

@@ -113,15 +113,8 @@ namespace {
 /// May the core of a shape of the body have come so far that it passed through something?
 template <int D>
 bool came_far(const BodyState<D>& before, const BodyState<D>& now, const BodyMass<D>& mass) {
-    double chord;  // of the way of a point at distance 1
-    if constexpr (D == 2) {
-        chord = length(Vec<2>{now.rotation.c - before.rotation.c, now.rotation.s - before.rotation.s});
-    } else {
-        const Rotation<3>&q = now.rotation, &p = before.rotation;
-        const double cosine = q.x * p.x + q.y * p.y + q.z * p.z + q.w * p.w;
-        chord = 2 * std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    }
-    return length(now.position - before.position) + chord * mass.radius > seen_share * mass.core_radius;
+    const double turned = mass.radius * chord_between(before.rotation, now.rotation);
+    return length(now.position - before.position) + turned > seen_share * mass.core_radius;
 }
 
 }  // namespace

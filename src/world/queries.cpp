@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <thread>
 
 #include "collision/cast.hpp"
 #include "collision/closest.hpp"
@@ -187,29 +184,6 @@ ShapeQuery<D> checked(const WorldState<D>& world, const Solid<D>& solid, const T
     return {world, solid, unit, translation, filter};
 }
 
-/// Calls work(begin, end) for stretches of 0 … count on several threads; throws the first thing thrown.
-template <class Work>
-void share(std::size_t count, int threads, const Work& work) {
-    constexpr std::size_t stretch = 256;
-    std::atomic<std::size_t> next{0};
-    std::vector<std::exception_ptr> errors(std::size_t(threads), nullptr);
-    const auto run = [&](std::exception_ptr& error) {
-        try {
-            for (std::size_t begin; (begin = next.fetch_add(stretch)) < count;)
-                work(begin, std::min(begin + stretch, count));
-        } catch (...) {
-            error = std::current_exception();
-        }
-    };
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < errors.size(); ++i)
-        helpers.emplace_back([&run, &error = errors[i]] { run(error); });
-    run(errors[0]);
-    helpers.clear();
-    for (const std::exception_ptr& error : errors)
-        if (error) std::rethrow_exception(error);
-}
-
 }  // namespace
 
 template <int D>
@@ -246,7 +220,7 @@ bool World<D>::cast_ray_any(const Ray<D>& ray, const QueryFilter<D>& filter) con
 template <int D>
 void World<D>::cast_rays(std::span<const Ray<D>> rays, std::span<std::optional<WorldHit<D>>> hits,
                          const QueryFilter<D>& filter, int threads) const {
-    if (threads < 1 || threads > 256) refuse("threads", threads, "is not between 1 and 256");
+    const std::shared_ptr<Scheduler> pool = make_thread_pool(threads);
     if (hits.size() != rays.size()) {
         throw Error("hits: " + std::to_string(hits.size()) + " are not as many as the " +
                     std::to_string(rays.size()) + " rays");
@@ -259,7 +233,8 @@ void World<D>::cast_rays(std::span<const Ray<D>> rays, std::span<std::optional<W
         }
     }
     state_->plant_for_queries();
-    share(rays.size(), threads, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t stretch = 256;  // rays
+    run_range(pool.get(), rays.size(), stretch, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = RayQuery<D>{*state_, rays[i], filter}.first();
     });
 }

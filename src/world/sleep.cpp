@@ -20,12 +20,10 @@ void WorldState<D>::wake_all() {
 
 template <int D>
 void WorldState<D>::wake_neighbours(std::uint32_t body) {
-    for (const bool on_fixed : {false, true}) {
-        each_contact_of(body, on_fixed, [&](std::uint32_t contact) {
-            const ContactRecord<D>& c = contacts[contact];
-            wake(c.body_a == body ? c.body_b : c.body_a);
-        });
-    }
+    each_contact_of(body, [&](std::uint32_t contact) {
+        const ContactRecord<D>& c = contacts[contact];
+        wake(c.body_a == body ? c.body_b : c.body_a);
+    });
     bonds.each(body, [&](std::uint32_t, std::uint32_t other) { wake(other); });
     wake(body);
 }
@@ -83,17 +81,10 @@ void WorldState<D>::wake_touched(double dt) {
 namespace {
 
 /// How far the body came since it was last known to be at rest: its way, and that of its outermost point as
-/// it turned (2 sin of half the angle, times the radius).
+/// it turned.
 template <int D>
 double way_since_rest(const BodyState<D>& s, const BodyInfo<D>& info, double radius) {
-    const Rotation<D> turn = s.rotation * inverse(info.rest.rotation);
-    double chord;
-    if constexpr (D == 2) {
-        chord = std::fabs(turn.s) + (turn.c < 0 ? 1 : 0);
-    } else {
-        chord = 2 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-    }
-    return length(s.position - info.rest.position) + radius * chord;
+    return length(s.position - info.rest.position) + radius * chord_between(info.rest.rotation, s.rotation);
 }
 
 }  // namespace

@@ -371,6 +371,10 @@ struct WorldState {
         }
     }
     template <class Visit>
+    void each_contact_of(std::uint32_t body, const Visit& visit) const {
+        for (const ShapeId<D>& id : infos[body].shapes) each_contact_of_shape(id.index, visit);
+    }
+    template <class Visit>
     void each_contact_of(std::uint32_t body, bool on_fixed, const Visit& visit) const {
         for (const ShapeId<D>& id : infos[body].shapes) {
             contact_links.each(contact_list(id.index, on_fixed),

@@ -66,16 +66,16 @@ constexpr Stage<D> stages[] = {
     {"wake_touched", &WorldState<D>::wake_touched},      // sleepers that are being hit
     {"place_contacts", &WorldState<D>::place_contacts},  // what came out, for the solver
     {"sum_forces", &WorldState<D>::sum_forces},          // gravity, the user's forces, generators
-    {"solve_constraints", &WorldState<D>::solve_constraints},   // bodies in contact or on joints: the solver
-    {"fly_free_bodies", &WorldState<D>::fly_free_bodies},       // all others: the integrator
-    {"move_kinematic", &WorldState<D>::move_kinematic_bodies},  // what only the user moves
-    {"stop_at_obstacles", &WorldState<D>::stop_at_obstacles},   // nothing passes through what stands still
-    {"finish_bodies", &WorldState<D>::finish_bodies},           // quarantine, list of moved bodies
-    {"keep_in_boxes", &WorldState<D>::keep_in_boxes},           // queries find the bodies where they are now
-    {"report_contacts", &WorldState<D>::report_contacts},       // what began, ended and hit
-    {"sense", &WorldState<D>::sense},                           // who is inside the sensors
-    {"break_joints", &WorldState<D>::break_joints},             // those that were pulled too hard
-    {"fall_asleep", &WorldState<D>::fall_asleep},               // islands at rest
+    {"solve_constraints", &WorldState<D>::solve_constraints},  // bodies in contact or on joints: the solver
+    {"fly_free_bodies", &WorldState<D>::fly_free_bodies},      // all others: the integrator
+    {"move_kinematic_bodies", &WorldState<D>::move_kinematic_bodies},  // what only the user moves
+    {"stop_at_obstacles", &WorldState<D>::stop_at_obstacles},  // nothing passes through what stands still
+    {"finish_bodies", &WorldState<D>::finish_bodies},          // quarantine, list of moved bodies
+    {"keep_in_boxes", &WorldState<D>::keep_in_boxes},          // queries find the bodies where they are now
+    {"report_contacts", &WorldState<D>::report_contacts},      // what began, ended and hit
+    {"sense", &WorldState<D>::sense},                          // who is inside the sensors
+    {"break_joints", &WorldState<D>::break_joints},            // those that were pulled too hard
+    {"fall_asleep", &WorldState<D>::fall_asleep},              // islands at rest
 };
 
 }  // namespace

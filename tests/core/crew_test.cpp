@@ -67,6 +67,19 @@ TEST(ThreadPool, ARangeIsCoveredOnce) {
     }
 }
 
+TEST(ThreadPool, WhatACallThrowsReachesTheCaller) {
+    const auto pool = make_thread_pool(3);
+    for (const std::size_t bad : {0u, 500u, 999u}) {
+        const auto task = [&](std::size_t begin, std::size_t end) {
+            if (begin <= bad && bad < end) throw Error("no");
+        };
+        EXPECT_THROW(pool->run_range(1000, 10, task), Error) << bad;
+    }
+    std::atomic<int> sum{0};
+    pool->run_on_all([&](int) { ++sum; });
+    EXPECT_EQ(sum, 3) << "and the pool goes on";
+}
+
 TEST(ThreadPool, ManyJobsOneAfterTheOther) {
     const auto pool = make_thread_pool(3);
     std::atomic<int> sum{0};

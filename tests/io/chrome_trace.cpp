@@ -45,7 +45,7 @@ TEST(Profile, TellsWhatAStepTook) {
         const StepProfile& profile = world.profile();
         double at = profile.begin;
         for (const StageTime& stage : profile.stages) {
-            EXPECT_EQ(stage.begin, at) << stage.name;
+            EXPECT_NEAR(stage.begin, at, 1e-9) << stage.name;
             EXPECT_GE(stage.seconds, 0) << stage.name;
             at = stage.begin + stage.seconds;
         }
