@@ -23,7 +23,7 @@ struct BenchOptions {
     std::vector<int> threads{1};
     int repeat = 3;
     int steps = 0;  ///< 0: as many as the scene says
-    bool json = false, list = false;
+    bool json = false, list = false, stages = false;
 };
 
 /// One run of a scene, or several of the same.
@@ -36,12 +36,29 @@ struct BenchResult {
     std::vector<double> ms_per_step{};  ///< of each run
     std::uint64_t hash = 0;
     bool reproducible = true;  ///< all runs ended in the same state
+    StepProfile sums{};        ///< over the steps of all runs, where stages are asked for
+    int profiled = 0;          ///< steps in these sums
 };
+
+/// Adds what one step took to the sums of all.
+void add_profile(const StepProfile& step, BenchResult& result) {
+    StepProfile& sums = result.sums;
+    ++result.profiled;
+    sums.stages.resize(step.stages.size());
+    for (std::size_t i = 0; i < step.stages.size(); ++i) {
+        sums.stages[i].name = step.stages[i].name;
+        sums.stages[i].seconds += step.stages[i].seconds;
+    }
+    sums.awake += step.awake;
+    sums.pairs += step.pairs;
+    sums.solved += step.solved;
+    sums.looked_at += step.looked_at;
+}
 
 /// Times the steps as one interval, with what the scene does between them. All scenes but those taken from a
 /// program that counts its first step leave that one out.
 template <int D>
-void run_once(BenchWorld<D> (*make)(), const BenchScene& scene, BenchResult& result) {
+void run_once(BenchWorld<D> (*make)(), const BenchScene& scene, bool stages, BenchResult& result) {
     using Clock = std::chrono::steady_clock;
     BenchWorld<D> bench = make();
     if (result.threads > 1) bench.world.set_scheduler(make_thread_pool(result.threads));
@@ -51,8 +68,12 @@ void run_once(BenchWorld<D> (*make)(), const BenchScene& scene, BenchResult& res
     };
     const int untimed = scene.first_step_timed ? 0 : 1;
     for (int i = 0; i < untimed; ++i) step(i);
+    bench.world.set_profiling(stages);
     const auto start = Clock::now();
-    for (int i = untimed; i < result.steps; ++i) step(i);
+    for (int i = untimed; i < result.steps; ++i) {
+        step(i);
+        if (stages) add_profile(bench.world.profile(), result);
+    }
     const std::chrono::duration<double, std::milli> taken = Clock::now() - start;
 
     result.ms_per_step.push_back(taken.count() / (result.steps - untimed));
@@ -69,7 +90,7 @@ BenchResult measure(const BenchScene& scene, int threads, const BenchOptions& op
     result.steps = options.steps > 0 ? options.steps : scene.steps;
     result.threads = threads;
     for (int i = 0; i < options.repeat; ++i)
-        std::visit([&](const auto& make) { run_once(make, scene, result); }, scene.make);
+        std::visit([&](const auto& make) { run_once(make, scene, options.stages, result); }, scene.make);
     return result;
 }
 
@@ -111,6 +132,21 @@ void print_table(const std::vector<BenchResult>& results) {
     fmt::print("{}", table.text());
 }
 
+/// What the stages of a step took, and how much there was to do, on average.
+void print_stages(const BenchResult& r) {
+    const auto mean = [&](auto sum) { return static_cast<double>(sum) / r.profiled; };
+    fmt::print(
+        "\n{}, a step: {:.0f} bodies awake, {:.0f} pairs, {:.0f} solved, {:.0f} looked at one by one\n",
+        r.name, mean(r.sums.awake), mean(r.sums.pairs), mean(r.sums.solved), mean(r.sums.looked_at));
+    double whole = 0;
+    for (const StageTime& stage : r.sums.stages) whole += stage.seconds;
+    Table table({{"stage"}, {"ms", true}, {"share", true}});
+    for (const StageTime& stage : r.sums.stages)
+        table.add({stage.name, fmt::format("{:.3f}", mean(stage.seconds * 1000)),
+                   fmt::format("{:.1f} %", 100 * stage.seconds / whole)});
+    fmt::print("{}", table.text());
+}
+
 std::vector<BenchScene> chosen_scenes(const std::vector<std::string>& names) {
     const auto all = bench::bench_scenes();
     if (names.empty()) return {all.begin(), all.end()};
@@ -143,6 +179,8 @@ int run_benchmarks(const BenchOptions& options) {
             status = failed_check;
         }
     options.json ? print_json(results) : print_table(results);
+    if (!options.stages || options.json) return status;
+    for (const BenchResult& r : results) print_stages(r);
     return status;
 }
 
@@ -164,6 +202,7 @@ void add_bench(CLI::App& program, int& status) {
         ->check(CLI::Range(2, 1'000'000).description(""));
     command->add_flag("--list", options->list, "Name the scenes and end");
     command->add_flag("--json", options->json, "Print an array of objects");
+    command->add_flag("--stages", options->stages, "Also print what the stages of a step take");
     command->callback([options, &status] { status = run_benchmarks(*options); });
 }
 

@@ -49,6 +49,9 @@ struct ManifoldPoint {
     std::uint32_t feature = 0;  ///< which features meet here; equal from step to step while they are the same
 };
 
+/// Whose face gives a manifold its normal, which then turns with that shape.
+enum class NormalOf : std::uint8_t { neither, first, second };
+
 /// Where and along which direction two shapes touch.
 template <int D>
 struct Manifold {
@@ -57,6 +60,7 @@ struct Manifold {
     Vec<D> normal{};  ///< unit vector from the first shape towards the second
     std::array<ManifoldPoint<D>, capacity> points{};
     int count = 0;  ///< number of points, 0 … `capacity`
+    NormalOf normal_of = NormalOf::neither;
 };
 
 /// The points of two shapes that are nearest to each other.

@@ -81,6 +81,8 @@ Manifold<D> moved(Manifold<D> manifold, const Transform<D>& t) {
 template <int D>
 Manifold<D> exchanged(Manifold<D> manifold) {
     manifold.normal = -manifold.normal;
+    if (manifold.normal_of != NormalOf::neither)
+        manifold.normal_of = manifold.normal_of == NormalOf::first ? NormalOf::second : NormalOf::first;
     return manifold;
 }
 

@@ -59,6 +59,7 @@ struct ContactRecord {
     ContactPlace place{};
     static constexpr std::uint32_t nowhere = ~std::uint32_t{0};
     std::uint32_t loose = nowhere;  ///< its place in the list of those that are looked at one by one
+    std::uint32_t apart = nowhere;  ///< its place among those that are known not to touch
 };
 
 /// The contact with a and b exchanged.

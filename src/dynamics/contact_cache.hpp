@@ -27,10 +27,10 @@ struct RelativePose {
 /// The manifold of two shapes as it was when it was last worked out, each point marked on both bodies. While
 /// the bodies hardly move against each other, the same points, carried along, are the manifold still.
 ///
-/// The error is bounded: the marks of a point part by no more than the way and the turn allowed below, so a
-/// gap is wrong by at most their product with the angle between the two faces, and the edge of the patch by
-/// the way itself. Nothing adds up from step to step, as the comparison is always with the pose at which the
-/// shapes were collided.
+/// The normal turns with the body whose face gives it, so the gap of a corner over a face is exact. What is
+/// wrong by no more than the way is the edge of the patch; and where two edges or corners meet, a gap by no
+/// more than the way times the turn, so that less of both is allowed there. Nothing adds up from step to
+/// step, as the comparison is always with the pose at which the shapes were collided.
 template <int D>
 struct ContactCache {
     struct Point {
@@ -41,11 +41,13 @@ struct ContactCache {
 
     RelativePose<D> pose{};
     Vec<D, float> normal{};  ///< in a's axes; where there are no points, what may hold the shapes apart
+    NormalOf normal_of = NormalOf::neither;  ///< with whom it turns; with a where it is neither's
     std::array<Point, Manifold<D>::capacity> points{};
     float roundness_a = 0, roundness_b = 0;
     int count = 0;
     float gap = 0;   ///< where there are no points and `normal` is not zero: the gap along it, m
     float way = -1;  ///< how far b may move against a before the manifold must be made anew, m; < 0: at once
+    float turn = 0;  ///< and how far it may turn, rad
 
     void forget() { way = -1; }
     bool holds(const RelativePose<D>& now) const;
@@ -55,9 +57,13 @@ struct ContactCache {
     double least_gap(const RelativePose<D>& now, double radius_b) const;
 };
 
-/// What a manifold outlives: a way of this share of the smaller body's radius, and a turn by this angle.
-constexpr double reuse_share = 5e-3;
-constexpr double reuse_turn = 5e-3;  // rad
+/// What a manifold outlives: a way of this share of the smaller body's radius, and the turn that moves the
+/// body's outermost point as far. Points that were left out were beyond reach (`speculative_distance`) by the
+/// way at least, so none of them can have come to overlap as long as that is no more than the reach.
+constexpr double reuse_share = 0.03;
+constexpr double reuse_way = 0.02;  // m, at most
+/// Of these, the share that is allowed where the normal is nobody's.
+constexpr float reuse_without_face = 1.0f / 6;
 
 template <int D>
 bool ContactCache<D>::holds(const RelativePose<D>& now) const {
@@ -66,12 +72,12 @@ bool ContactCache<D>::holds(const RelativePose<D>& now) const {
     if constexpr (D == 2) {
         const double sine = now.rotation.s * pose.rotation.c - now.rotation.c * pose.rotation.s;
         const double cosine = now.rotation.c * pose.rotation.c + now.rotation.s * pose.rotation.s;
-        return cosine > 0 && std::fabs(sine) <= reuse_turn;
+        return cosine > 0 && std::fabs(sine) <= double{turn};
     } else {
         // q · q₀ = cos of half the angle between them, whatever their signs.
         const Rotation<3>&q = now.rotation, &r = pose.rotation;
         const double cosine = q.x * r.x + q.y * r.y + q.z * r.z + q.w * r.w;
-        return cosine * cosine >= 1 - 0.25 * reuse_turn * reuse_turn;
+        return cosine * cosine >= 1 - 0.25 * double{turn} * turn;
     }
 }
 

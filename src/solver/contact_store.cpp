@@ -1,6 +1,7 @@
 #include "solver/contact_store.hpp"
 
 #include "solver/prepare.hpp"
+#include "solver/split_pose.hpp"
 
 namespace carom::detail {
 
@@ -15,34 +16,14 @@ struct MarkFields {
     static std::size_t touching() { return field_of(model, model.touching); }
 };
 
-/// A double as the sum of two floats.
-struct Split {
-    float first, rest;
-    explicit Split(double value)
-        : first(static_cast<float>(value)), rest(static_cast<float>(value - static_cast<double>(first))) {}
-};
-
-void split(const Rotation<2>& q, Rotation<2, float>& first, Rotation<2, float>& rest) {
-    const Split c(q.c), s(q.s);
-    first = {c.first, s.first};
-    rest = {c.rest, s.rest};
-}
-void split(const Rotation<3>& q, Rotation<3, float>& first, Rotation<3, float>& rest) {
-    const Split x(q.x), y(q.y), z(q.z), w(q.w);
-    first = {x.first, y.first, z.first, w.first};
-    rest = {x.rest, y.rest, z.rest, w.rest};
-}
-
 template <int D>
 ContactMarks<D, float> marks_of(const ContactCache<D>& cache) {
     ContactMarks<D, float> marks;
-    for (int i = 0; i < D; ++i) {
-        const Split place(cache.pose.position[i]);
-        marks.place[i] = place.first;
-        marks.place_rest[i] = place.rest;
-    }
-    split(cache.pose.rotation, marks.turn, marks.turn_rest);
-    marks.normal = cache.normal;
+    set_pose(cache.pose, marks.place, marks.place_rest, marks.turn, marks.turn_rest);
+    const bool of_b = cache.normal_of == NormalOf::second;
+    marks.normal =
+        of_b ? narrow<float>(unrotate(cache.pose.rotation, narrow<double>(cache.normal))) : cache.normal;
+    marks.is_of_b = of_b ? 1.0f : 0.0f;
     for (int k = 0; k < max_points<D>; ++k) {
         const auto& from = cache.points[k];
         const bool there = k < cache.count;
@@ -51,6 +32,7 @@ ContactMarks<D, float> marks_of(const ContactCache<D>& cache) {
         marks.points[k].separation = there ? from.separation : no_separation;
     }
     marks.way_squared = cache.way * cache.way;
+    marks.turn_squared = cache.turn * cache.turn;
     return marks;
 }
 

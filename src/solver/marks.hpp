@@ -22,9 +22,11 @@ struct ContactMarks {
 
     Vec<D, F> place{}, place_rest{};     ///< of b's centre of mass, seen from a
     Rotation<D, F> turn{}, turn_rest{};  ///< of b, seen from a
-    Vec<D, F> normal{};                  ///< in a's axes
+    Vec<D, F> normal{};                  ///< in the axes of a, or of b if it is b's
+    F is_of_b{};                         ///< 1 if the normal turns with b, else 0
     std::array<Point, max_points<D>> points{};
-    F way_squared{};  ///< how far b may move against a before the manifold is to be made anew; < 0: at once
+    F way_squared{};   ///< how far b may move against a before the manifold is to be made anew; < 0: at once
+    F turn_squared{};  ///< how far it may turn
     F restitution{};
     F touching{};  ///< 1 if the contact touched when events were last reported, else 0
 };
@@ -93,6 +95,25 @@ CAROM_INLINE auto small_turn(const Rotation<3, Wide<F>>& q, Angular<3, F>& angle
     return fabs(w) > F(0.5f);
 }
 
+template <class F>
+CAROM_INLINE Rotation<2, F> narrowed(const Rotation<2, Wide<F>>& q) {
+    return {F(q.c), F(q.s)};
+}
+template <class F>
+CAROM_INLINE Rotation<3, F> narrowed(const Rotation<3, Wide<F>>& q) {
+    return {F(q.x), F(q.y), F(q.z), F(q.w)};
+}
+
+template <class Mask, class F>
+CAROM_INLINE Rotation<2, F> selected(Mask mask, const Rotation<2, F>& yes, const Rotation<2, F>& no) {
+    return {select(mask, yes.c, no.c), select(mask, yes.s, no.s)};
+}
+template <class Mask, class F>
+CAROM_INLINE Rotation<3, F> selected(Mask mask, const Rotation<3, F>& yes, const Rotation<3, F>& no) {
+    return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z),
+            select(mask, yes.w, no.w)};
+}
+
 /// How far the rotation vector θ moves the end of an arm: θ × r + ½ θ × (θ × r).
 template <int D, class F>
 CAROM_INLINE Vec<D, F> way_of(const Angular<D, F>& angle, const Vec<D, F>& arm) {
@@ -105,7 +126,7 @@ CAROM_INLINE Vec<D, F> way_of(const Angular<D, F>& angle, const Vec<D, F>& arm) 
 /// which points have some; or all points are out of reach.
 template <int D, class F>
 CAROM_INLINE auto refresh(ContactRows<D, F>& rows, const ContactMarks<D, F>& marks, const Pose<D, F>& a,
-                          const Pose<D, F>& b, F reach, F most_turn) {
+                          const Pose<D, F>& b, F reach) {
     using W = Wide<F>;
     const Vec<D, W> place = unrotate(a.rotation, Vec<D, W>(b.position - a.position));
     Vec<D, F> way;
@@ -114,16 +135,15 @@ CAROM_INLINE auto refresh(ContactRows<D, F>& rows, const ContactMarks<D, F>& mar
     const auto near_turn = small_turn<F>(
         (inverse(a.rotation) * b.rotation) * inverse(sum_of(marks.turn, marks.turn_rest)), angle);
     const auto holds = both(near_turn, both(!(dot(way, way) > marks.way_squared),
-                                            !(angular_dot(angle, angle) > most_turn * most_turn)));
+                                            !(angular_dot(angle, angle) > marks.turn_squared)));
 
-    Rotation<D, F> axes;
-    if constexpr (D == 2) {
-        axes = {F(a.rotation.c), F(a.rotation.s)};
-    } else {
-        axes = {F(a.rotation.x), F(a.rotation.y), F(a.rotation.z), F(a.rotation.w)};
-    }
+    const Rotation<D, F> axes = narrowed<F>(a.rotation), axes_b = narrowed<F>(b.rotation);
+    const auto of_b = marks.is_of_b > F(0.5f);
     const Vec<D, F> friction = along_tangents(rows, rows.friction_impulse);
-    rows.normal = rotate(axes, marks.normal);
+    rows.normal = rotate(selected(of_b, axes_b, axes), marks.normal);
+    const Vec<D, F> turned = unrotate(axes, rows.normal);
+    Vec<D, F> normal;  // in a's axes
+    for (int i = 0; i < D; ++i) normal[i] = select(of_b, turned[i], marks.normal[i]);
     const auto t = tangents<D>(rows.normal);
     rows.tangent = t[0];
     for (int i = 0; i < D - 1; ++i) {
@@ -135,7 +155,7 @@ CAROM_INLINE auto refresh(ContactRows<D, F>& rows, const ContactMarks<D, F>& mar
         const auto& mark = marks.points[k];
         NormalRow<D, F>& p = rows.points[k];
         const Vec<D, F> parted = way + way_of<D>(angle, mark.on_b);
-        p.separation = mark.separation + dot(marks.normal, parted);
+        p.separation = mark.separation + dot(normal, parted);
         p.arm_a = rotate(axes, Vec<D, F>(mark.on_a + F(0.5f) * parted));
         p.arm_b = rotate(axes, Vec<D, F>(mark.on_b - way + F(0.5f) * parted));
         const F used = select(p.separation > reach, F(0), F(1));

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/crew.hpp"
+#include "solver/apart.hpp"
 #include "solver/body_records.hpp"
 #include "solver/drive.hpp"
 #include "solver/marks.hpp"
@@ -43,6 +44,15 @@ struct BodySpan {
     Part blocks;              ///< of them
 };
 
+/// Blocks of pairs that do not touch.
+struct ApartSpan {
+    const float* marks = nullptr;  ///< of `ApartMarks<D, F>`
+    const std::uint32_t* body_a = nullptr;
+    const std::uint32_t* body_b = nullptr;
+    std::uint32_t* found = nullptr;
+    std::size_t blocks = 0;
+};
+
 /// The inner loops of the solver for one lane width.
 template <int D>
 struct Passes {
@@ -51,7 +61,9 @@ struct Passes {
 
     // Over contacts.
     /// Carries the points along with the bodies, and finds the contacts for which that does not do.
-    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, float reach, float most_turn);
+    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, float reach);
+    /// Finds the pairs that may touch.
+    void (*find_near)(const ApartSpan&, const PoseView<D>&, const ApartLimits<float>&);
     /// Effective masses; applies the impulses that are kept; finds the contacts that have none.
     void (*prepare)(const BlockSpan<D>&, const RecordView<D>&);
     void (*warm_start)(const BlockSpan<D>&, const RecordView<D>&);

@@ -38,13 +38,23 @@ struct PassesIn {
         }
     }
 
-    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, float reach, float most_turn) {
+    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, float reach) {
         Rows* rows = reinterpret_cast<Rows*>(span.rows);
         const Marks* marks = reinterpret_cast<const Marks*>(span.marks);
         for (std::size_t k = 0; k < span.blocks; ++k) {
             const Pose<D, F> a = gather_pose<F>(poses, span.body_a + k * width),
                              b = gather_pose<F>(poses, span.body_b + k * width);
-            span.found[k] = bits_of(detail::refresh(rows[k], marks[k], a, b, F(reach), F(most_turn)));
+            span.found[k] = bits_of(detail::refresh(rows[k], marks[k], a, b, F(reach)));
+        }
+    }
+
+    static void find_near(const ApartSpan& span, const PoseView<D>& poses, const ApartLimits<float>& limits) {
+        const auto* marks = reinterpret_cast<const ApartMarks<D, F>*>(span.marks);
+        const ApartLimits<F> wide{F(limits.reach), F(limits.slow_way), F(limits.dt), F(limits.falling)};
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            const std::uint32_t *a = span.body_a + k * width, *b = span.body_b + k * width;
+            span.found[k] = bits_of(may_touch(marks[k], gather_pose<F>(poses, a), gather_pose<F>(poses, b),
+                                              gather_speeds<F>(poses, a), gather_speeds<F>(poses, b), wide));
         }
     }
 
@@ -169,6 +179,7 @@ struct PassesIn {
 
     static constexpr Passes<D> all{width,
                                    refresh,
+                                   find_near,
                                    prepare,
                                    warm_start,
                                    look_ahead,

@@ -95,7 +95,7 @@ class Solver {
     void refresh(std::span<const BodyState<D>> states, float reach, Scheduler* scheduler, Look&& look) {
         const PoseView<D> poses{reinterpret_cast<const double*>(states.data())};
         each_part(scheduler, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
-            passes.refresh(span, poses, reach, static_cast<float>(reuse_turn));
+            passes.refresh(span, poses, reach);
         });
         each_section([&](Section& s) { each_found(s, look); });
     }

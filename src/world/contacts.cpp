@@ -5,8 +5,9 @@
 
 // What is done about each contact, and where it is kept. Contacts that carry impulses are the solver's, and
 // most of these need nothing but to be carried along with their bodies, which the solver does for many at
-// once. The others are loose: each step looks at them one by one. They are out of reach, on something
-// particular, or round. Contacts of bodies that all stand still are neither, and cost nothing.
+// once. Most others are known to be apart, and so seen to be for many at once. What is left is loose: each
+// step looks at it one by one. It came near, is on something particular, or round. Contacts of bodies that
+// all stand still are none of these, and cost nothing.
 
 namespace carom::detail {
 
@@ -48,6 +49,7 @@ void WorldState<D>::remove_contact(std::size_t contact) {
     const auto i = static_cast<std::uint32_t>(contact),
                last = static_cast<std::uint32_t>(contacts.size() - 1);
     if (contacts[i].place) leave_solver(i);
+    leave_apart(i);
     const ContactRecord<D>& c = contacts[i];
     if (c.loose != c.nowhere) loose[c.loose] = c.nowhere;
     if (c.on_fixed) --fixed_contacts_of[mover(c)];
@@ -63,6 +65,7 @@ void WorldState<D>::remove_contact(std::size_t contact) {
         caches[i] = caches[last];
         if (contacts[i].place) solver.rename(contacts[i], i);
         if (contacts[i].loose != c.nowhere) loose[contacts[i].loose] = i;
+        if (contacts[i].apart != c.nowhere) apart.rename(contacts[i].apart, i);
     }
     contacts.pop_back();
     caches.pop_back();
@@ -109,6 +112,7 @@ void WorldState<D>::loosen(std::uint32_t contact) {
     ContactRecord<D>& c = contacts[contact];
     if (c.loose != c.nowhere) return;
     if (c.place) solver.read(caches[contact], c);
+    leave_apart(contact);
     c.loose = static_cast<std::uint32_t>(loose.size());
     loose.push_back(contact);
 }
@@ -116,6 +120,7 @@ void WorldState<D>::loosen(std::uint32_t contact) {
 template <int D>
 void WorldState<D>::stop_carrying(std::uint32_t contact) {
     ContactRecord<D>& c = contacts[contact];
+    if (c.apart != c.nowhere) loosen(contact);
     if (!c.place || !solver.is_carried(c)) return;
     loosen(contact);
     solver.write(c, nullptr);
@@ -127,6 +132,15 @@ void WorldState<D>::leave_solver(std::uint32_t contact) {
     const std::uint32_t index = c.place.index;
     const std::uint32_t moved = solver.remove(c);
     if (moved != Solver<D>::none) contacts[moved].place.index = index;
+}
+
+template <int D>
+void WorldState<D>::leave_apart(std::uint32_t contact) {
+    ContactRecord<D>& c = contacts[contact];
+    if (c.apart == c.nowhere) return;
+    const std::uint32_t moved = apart.remove(c.apart);
+    if (moved != ApartStore<D>::none) contacts[moved].apart = c.apart;
+    c.apart = c.nowhere;
 }
 
 /// Brings the records of the loose contacts up to date with what the solver did.
@@ -156,6 +170,10 @@ void WorldState<D>::follow_bodies() {
         leave_solver(i);
     });
     if (!changed) return;
+    for (std::size_t k = apart.size(); k-- > 0;) {
+        const auto i = static_cast<std::uint32_t>(k);
+        if (solver.changed(apart.body_a(i)) || solver.changed(apart.body_b(i))) loosen(apart.contact(i));
+    }
     for (const std::uint32_t body : awake) {
         if (!solver.changed(body)) continue;
         each_contact_of(body, [&](std::uint32_t contact) {
@@ -171,6 +189,15 @@ bool WorldState<D>::can_be_carried(const ContactRecord<D>& c, const ContactCache
     if (!definition.continuous || cache.way < 0 || c.special) return false;
     if (c.on_fixed) return fixed_contacts_of[mover(c)] == 1;
     return moving[c.body_a] != stands_still && moving[c.body_b] != stands_still;
+}
+
+/// Does nothing have to be known of the contact until its bodies have come nearer? The cache has to tell of a
+/// gap between shapes that are not infinite. Where several fixed shapes may be one surface, each counts.
+template <int D>
+bool WorldState<D>::can_stay_apart(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
+    if (!definition.continuous || c.count > 0 || c.touching || c.merged || c.special) return false;
+    if (cache.count > 0 || cache.way < 0 || cache.normal == Vec<D, float>{}) return false;
+    return masses[c.body_b].radius > 0 && (!c.on_fixed || fixed_contacts_of[mover(c)] == 1);
 }
 
 /// Gives the solver what came out for the loose contacts. Those that can be carried along are not loose then.
@@ -191,6 +218,11 @@ void WorldState<D>::place_contacts() {
         if (pushes && !c.place) to_place.push_back(i);
         if (!pushes && c.place) leave_solver(i);
         if (carried) continue;
+        if (!pushes && can_stay_apart(c, caches[i])) {
+            c.apart =
+                apart.add(i, c.body_a, c.body_b, caches[i], masses[c.body_a].radius, masses[c.body_b].radius);
+            continue;
+        }
         c.loose = static_cast<std::uint32_t>(left);
         loose[left++] = i;
     }
@@ -213,6 +245,7 @@ void WorldState<D>::place_contacts() {
     template void WorldState<D>::forget_manifolds_of(std::uint32_t);                    \
     template void WorldState<D>::loosen(std::uint32_t);                                 \
     template void WorldState<D>::stop_carrying(std::uint32_t);                          \
+    template void WorldState<D>::leave_apart(std::uint32_t);                            \
     template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;              \
     template void WorldState<D>::take_loose();                                          \
     template void WorldState<D>::follow_bodies();                                       \

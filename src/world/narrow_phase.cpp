@@ -38,6 +38,11 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
     if (c.on_fixed && m.count > 1) lay_on_fixed_face(m, c, b_in_a);
     cache.pose = RelativePose<D>(a, b);
     cache.normal = narrow<float>(m.normal);
+    cache.normal_of = m.normal_of;
+    if (m.normal_of == NormalOf::neither) {
+        cache.way *= reuse_without_face;
+        cache.turn *= reuse_without_face;
+    }
     cache.roundness_a = static_cast<float>(roundness<D>(shape_a, m.normal));
     cache.roundness_b = static_cast<float>(roundness<D>(shape_b, unrotate(b_in_a.rotation, m.normal)));
     cache.count = m.count;
@@ -54,7 +59,10 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
 template <int D>
 void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>& a, const BodyState<D>& b,
                                double reach, ContactRecord<D>& c) const {
-    const Vec<D> normal = rotate(a.rotation, narrow<double>(cache.normal));
+    const Vec<D> found = narrow<double>(cache.normal);
+    const Vec<D> normal = cache.normal_of == NormalOf::second
+                              ? rotate(b.rotation, unrotate(cache.pose.rotation, found))
+                              : rotate(a.rotation, found);
     const Vec<D> between = b.position - a.position;
     c.normal = narrow<float>(normal);
     c.roundness_a = cache.roundness_a;
@@ -84,18 +92,23 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
     const double way = dt * (length(sb.velocity - sa.velocity) + turning_speed(sa, ma) +
                              turning_speed(sb, mb) + length(definition.gravity) * dt);
     const double reach = definition.continuous ? speculative_distance : speculative_distance + way;
-    const ContactRecord<D> old = c;
     const RelativePose<D> pose(sa, sb);
-    if (cache.least_gap(pose, mb.radius) <= reach && !cache.holds(pose)) {
+    const double least_gap = cache.least_gap(pose, mb.radius);
+    const bool is_slow = !definition.continuous || way <= 0.5 * speculative_distance;
+    if (is_slow && least_gap > reach && c.count == 0 && !c.merged && !c.special) return;
+    const ContactRecord<D> old = c;
+    if (least_gap <= reach && !cache.holds(pose)) {
         // Points that are out of reach by less than the bodies may move before this is done again count too.
-        cache.way = static_cast<float>(reuse_share * smaller_radius(ma, mb));
+        const double radius = smaller_radius(ma, mb);
+        cache.way = static_cast<float>(std::min(reuse_share * radius, reuse_way));
+        cache.turn = static_cast<float>(cache.way / radius);
         touch(c, sa, sb, reach + cache.way, cache);
         // Round shapes roll away from their marks; and without continuous collision the reach is this step's.
         const bool round = cache.roundness_a != 0 || cache.roundness_b != 0;
         if ((round && cache.count > 0) || !definition.continuous) cache.forget();
     }
     set_points(cache, sa, sb, reach, c);
-    if (c.count == 0 && definition.continuous && way > 0.5 * speculative_distance) {
+    if (c.count == 0 && !is_slow) {
         meet_ahead(c, cache, dt);
         if (c.count > 0) cache.forget();  // these points are of another time
     }
@@ -114,6 +127,10 @@ void WorldState<D>::collide(double dt) {
     solver.refresh(states, static_cast<float>(speculative_distance), scheduler.get(), [&](std::uint32_t i) {
         if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
     });
+    const ApartLimits<float> limits{static_cast<float>(speculative_distance),
+                                    static_cast<float>(0.5 * speculative_distance), static_cast<float>(dt),
+                                    static_cast<float>(length(definition.gravity) * dt * dt)};
+    for (const std::uint32_t i : apart.find_near(states, limits, scheduler.get())) loosen(i);
     run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             ContactRecord<D>& c = contacts[loose[k]];

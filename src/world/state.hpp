@@ -22,6 +22,7 @@
 #include "dynamics/forces.hpp"
 #include "dynamics/joint.hpp"
 #include "geometry/shape.hpp"
+#include "solver/apart_store.hpp"
 #include "solver/joint_load.hpp"
 #include "solver/solver.hpp"
 
@@ -164,6 +165,7 @@ struct WorldState {
     std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
     Adjacency contact_links;                       ///< contacts between `contact_list`s of shapes
     std::vector<std::uint32_t> loose;              ///< contacts that are looked at one by one, or `nowhere`
+    ApartStore<D> apart;                           ///< contacts that are known not to touch
     std::vector<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
     std::vector<SensorPair> sensor_pairs;
     Adjacency sensor_links;                  ///< sensor pairs between shapes
@@ -258,6 +260,8 @@ struct WorldState {
     void take_loose();
     void follow_bodies();
     bool can_be_carried(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    bool can_stay_apart(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    void leave_apart(std::uint32_t contact);
     void place_contacts();
     ContactRecord<D> current(std::uint32_t contact) const;
     std::uint32_t mover(const ContactRecord<D>& contact) const;

@@ -70,6 +70,7 @@ void WorldState<D>::lay_on_fixed_face(Manifold<D>& m, const ContactRecord<D>& c,
         p.position = on_mover - 0.5 * p.separation * normal;
     }
     m.normal = outwards * normal;
+    m.normal_of = a_fixed ? NormalOf::first : NormalOf::second;
 }
 
 /// Where fixed shapes lie flush, the edges between them are not there for what slides over them. The contact

@@ -153,6 +153,7 @@ bool face_patch(const Meeting& meeting, bool base_is_b, double reach, Manifold<3
     if (points.empty() || !meeting.confirms(least)) return false;
     points.resize(merge_points<3>(points, snap));
     manifold = manifold_of<3>(points, base_is_b ? -base.normal : base.normal);
+    manifold.normal_of = base_is_b ? NormalOf::second : NormalOf::first;
     return true;
 }
 

@@ -32,6 +32,7 @@ Manifold<2> collide_with_plane(const Shape<2>& a, const Shape<2>& plane, const T
     const HalfPlane half(plane, plane_in_a);
     Manifold<2> result;
     result.normal = -half.normal;
+    result.normal_of = NormalOf::second;
     const auto add = [&](int corner) {
         const double height = half.height(outline.corner(corner));
         const double separation = height - outline.radius();

@@ -114,6 +114,7 @@ Manifold<2> touching(const Outline& first, const Outline& second, const Proximit
     const Overlap overlap = clip(leader, a_leads ? near.face_a : near.face_b, other);
     Manifold<2> result;
     result.normal = a_leads ? overlap.normal : -overlap.normal;
+    result.normal_of = a_leads ? NormalOf::first : NormalOf::second;
     for (int k = 0; overlap.exists && k < 2; ++k) {
         // The second end first where b leads: the points come in the same order whoever leads.
         const Overlap::End& end = overlap.ends[a_leads ? k : 1 - k];
@@ -135,7 +136,9 @@ Manifold<2> touching(const Outline& first, const Outline& second, const Proximit
     if (result.count == 2 && (!near.corners || (overlap.parallel_edges && confirms()))) return result;
     // A point that is left of two keeps its name.
     if (result.count == 1 && !near.corners) feature = result.points[0].feature;
-    return single_point(near, first, second, feature);
+    Manifold<2> single = single_point(near, first, second, feature);
+    if (!near.corners && single.normal == result.normal) single.normal_of = result.normal_of;
+    return single;
 }
 
 }  // namespace carom::detail
