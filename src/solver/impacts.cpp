@@ -132,7 +132,7 @@ void ImpactSolver<D>::add_contact(const Candidate& c, const ImpactView<D>& view)
                          widen<D>(store.rows().get(c.index))});
     for (std::uint32_t k = 0; k < Rows::capacity; ++k) {
         if (!(contacts_.back().rows.points[k].mass > 0)) continue;
-        points_.push_back({contact, k, 0, 0});
+        points_.push_back({contact, k, 0, 0, false, false});
         find_impact(points_.back(), 0, view);
     }
 }
@@ -195,14 +195,14 @@ double ImpactSolver<D>::speed_at(const Point& p, double time) const {
 }
 
 /// When, from a time on, the point is struck so that it may bounce or its body is thrown against something;
-/// never, if it is left to the solver. An impact that comes so soon after the sub-step that the solver would
-/// take the gap for closed belongs to the sub-step.
+/// never, if it is left to the solver.
 template <int D>
 void ImpactSolver<D>::find_impact(Point& p, double from, const ImpactView<D>& view) const {
     const double h = view.substep, start = gap_at(p, from), end = gap_at(p, from + h);
     const double middle = gap_at(p, from + 0.5 * h);
     const double speed = (4 * middle - 3 * start - end) / h;
     const double acceleration = 4 * (start - 2 * middle + end) / (h * h);
+    p.comes = false;
     p.time = start <= 0 && speed_at(p, from) < 0 ? from : from + time_to_close(start, speed, acceleration);
     if (p.time == infinite) return;
     p.speed = -speed_at(p, p.time);
@@ -210,8 +210,9 @@ void ImpactSolver<D>::find_impact(Point& p, double from, const ImpactView<D>& vi
     const bool thrown = flights_[c.a].struck || flights_[c.b].struck;
     const bool bounces = c.restitution > 0 && p.speed > view.threshold;
     const double least_speed = least_flight * h * std::fabs(acceleration) + 1e-9;
-    if (!(p.speed > least_speed) || !(bounces || thrown) || (p.time - h) * p.speed > 2 * closed_gap)
-        p.time = infinite;
+    const bool is_impact = p.speed > least_speed && (bounces || thrown);
+    p.comes = is_impact && bounces && p.time > h && (p.time - h) * p.speed < 4 * closed_gap;
+    if (!is_impact || p.time > h) p.time = infinite;
 }
 
 /// Takes the body, and what touches it at this time, into the impact.
@@ -306,6 +307,7 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
         if (work > much_work) rest *= 2;
         for (std::size_t i = 0; i < chosen_.size(); ++i) {
             tally(strikes_[i], points_[chosen_[i]], view);
+            points_[chosen_[i]].struck = true;
             involve(strikes_[i].a, time, view);
             involve(strikes_[i].b, time, view);
         }
@@ -343,7 +345,9 @@ void ImpactSolver<D>::apply(double time) {
 
 template <int D>
 void ImpactSolver<D>::strike(const ImpactView<D>& view) {
+    straighten(view, true);
     for (Flight& f : flights_) load(f, view);
+    for (Point& p : points_) p.struck = false;
     if (contacts_.empty()) {
         for (const Candidate& c : candidates_) add_contact(c, view);
     } else {
@@ -371,16 +375,64 @@ void ImpactSolver<D>::strike(const ImpactView<D>& view) {
         view.drives->set(f.slot, drive);
         scatter_velocity(view.bodies, &f.slot, body, false);
     }
+    bend_gaps(view);
 }
 
 template <int D>
-void ImpactSolver<D>::shift(const RecordView<D>& bodies) {
+float& ImpactSolver<D>::separation_of(const Point& p, const ImpactView<D>& view) const {
+    const Contact& c = contacts_[p.contact];
+    const ContactRows<D, float> model;
+    return view.stores[c.section]->rows().at(c.index, field_of(model, model.points[p.number].separation));
+}
+
+/// The solver lets bodies approach each other by the gap now over the length of the sub-step. For a body that was
+/// struck at τ this has to be the gap at which its path after τ would have begun. Where that is an overlap, the
+/// body was struck here and is on its way out: then any open gap will do. And a gap that the solver would take
+/// for closed is made a little wider where the body bounced, or will bounce, by itself.
+template <int D>
+void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
+    constexpr double open = 1e-6, wide = 2 * closed_gap;
+    const double h = view.substep;
+    for (std::uint32_t k = 0; k < points_.size(); ++k) {
+        const Point& p = points_[k];
+        const Contact& c = contacts_[p.contact];
+        const Flight &a = flights_[c.a], &b = flights_[c.b];
+        if (!a.struck && !b.struck && !p.comes) continue;
+        const auto before = [](const Flight& f) {
+            Motion<D, double> m = f.start;
+            m.moved -= f.blow.moved;
+            m.turned = m.turned - f.blow.turned;
+            return m;
+        };
+        const double now = gap(c.rows, c.rows.points[p.number], before(a), before(b)), end = gap_at(p, h);
+        if (now <= 0 && !p.struck) continue;
+        const bool is_free = p.comes || (p.struck && end >= 0 && c.restitution > 0);
+        double wanted = std::max(end - h * speed_at(p, h) - c.rows.lead, open);
+        if (is_free) wanted += wide + (end < 0 ? -end : 0);
+        float& separation = separation_of(p, view);
+        bent_.push_back({k, separation, is_free});
+        separation += static_cast<float>(wanted - now);
+    }
+}
+
+template <int D>
+void ImpactSolver<D>::straighten(const ImpactView<D>& view, bool at_the_end) {
+    std::erase_if(bent_, [&](const Bent& bent) {
+        if (bent.to_the_end && !at_the_end) return false;
+        separation_of(points_[bent.point], view) = bent.separation;
+        return true;
+    });
+}
+
+template <int D>
+void ImpactSolver<D>::shift(const ImpactView<D>& view) {
+    straighten(view, false);
     for (const Flight& f : flights_) {
-        if (!f.struck || f.slot < bodies.first_movable) continue;
-        Body<D, float> body = gather<float>(bodies, &f.slot);
+        if (!f.struck || f.slot < view.bodies.first_movable) continue;
+        Body<D, float> body = gather<float>(view.bodies, &f.slot);
         body.motion.moved += narrow<float>(f.blow.moved);
         body.motion.turned = body.motion.turned + narrow<float>(f.blow.turned);
-        scatter_way(bodies, &f.slot, body);
+        scatter_way(view.bodies, &f.slot, body);
     }
 }
 

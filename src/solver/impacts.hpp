@@ -38,7 +38,8 @@ struct ImpactView {
 ///
 /// So it is a change of the velocity and of the place at the start of the sub-step, exact for flight, and the
 /// solver, which knows nothing of it, goes on from there. The places are changed when it has integrated them,
-/// since those paths lead through the obstacle before τ.
+/// since those paths lead through the obstacle before τ. Until then the points of these bodies are given the gaps
+/// that their paths would have had (`bend_gaps`).
 ///
 /// All this is done in double precision by one worker, in the order of the contacts' numbers. Time is bounded:
 /// when a blow has cost too much, approach that is slow beside it is left to the solver, which takes it away
@@ -51,7 +52,9 @@ class ImpactSolver {
     /// Before a sub-step is solved, with velocities integrated.
     void strike(const ImpactView<D>& view);
     /// When its positions have been integrated.
-    void shift(const RecordView<D>& bodies);
+    void shift(const ImpactView<D>& view);
+    /// After the last sub-step.
+    void end(const ImpactView<D>& view) { straighten(view, true); }
 
   private:
     using Rows = ContactRows<D, double>;
@@ -80,6 +83,15 @@ class ImpactSolver {
     struct Point {
         std::uint32_t contact = 0, number = 0;
         double time = 0, speed = 0;
+        bool struck = false;  ///< in this sub-step
+        bool comes = false;   ///< it will be struck soon after the sub-step
+    };
+    /// The separation of a point as it stood in its row, until that holds again: when positions have been
+    /// integrated, or at the end of the sub-step.
+    struct Bent {
+        std::uint32_t point;
+        float separation;
+        bool to_the_end;
     };
 
     void reset(const ImpactView<D>& view);
@@ -96,12 +108,16 @@ class ImpactSolver {
     void involve(std::uint32_t flight, double time, const ImpactView<D>& view);
     void run_rounds(double time, double speed, const ImpactView<D>& view);
     void apply(double time);
+    void bend_gaps(const ImpactView<D>& view);
+    void straighten(const ImpactView<D>& view, bool at_the_end);
+    float& separation_of(const Point& point, const ImpactView<D>& view) const;
     void tally(const ImpactPoint<D>& struck, const Point& point, const ImpactView<D>& view) const;
 
     std::vector<Candidate> candidates_;
     std::vector<Flight> flights_;
     std::vector<Contact> contacts_;
     std::vector<Point> points_;
+    std::vector<Bent> bent_;
     std::vector<std::uint32_t> flight_of_slot_;
     std::vector<std::uint32_t> links_begin_;        ///< by slot, and one more: its contacts in `links_`
     std::vector<Candidate> links_;                  ///< by slot

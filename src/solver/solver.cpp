@@ -128,7 +128,10 @@ void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin(bodies, h_); });
     crew.alone([&] { expect_impacts(input); });
     step_through(input, crew);
-    crew.alone([&] { bounce(input); });
+    crew.alone([&] {
+        if (some_impacts_) impact_solver_.end(impact_view(input));
+        bounce(input);
+    });
     joints_.store(joint_input(input), crew);
     store_bodies(input, crew);
 }
@@ -150,7 +153,7 @@ void Solver<D>::step_through(const SolverInput<D>& input, const Crew& crew) {
             if (some_struck_) settle_struck<true>();
         });
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
-        if (some_impacts_) crew.alone([&] { impact_solver_.shift(view_); });
+        if (some_impacts_) crew.alone([&] { impact_solver_.shift(impact_view(input)); });
         joints_.relax(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.relax(span, view_, sub_);
