@@ -17,6 +17,8 @@ constexpr double slow_share = 0.05;
 constexpr double dead_share = 1e-5, rest_share = 1e-9;
 /// A bounce that would last less than this share of a sub-step is rest.
 constexpr double least_flight = 1.0 / 16;
+/// A gap that the solver does not take for closed.
+constexpr float wide = 2 * closed_gap;
 
 template <int D>
 ContactRows<D, double> widen(const ContactRows<D, float>& rows) {
@@ -391,7 +393,7 @@ float& ImpactSolver<D>::separation_of(const Point& p, const ImpactView<D>& view)
 /// for closed is made a little wider where the body bounced, or will bounce, by itself.
 template <int D>
 void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
-    constexpr double open = 1e-6, wide = 2 * closed_gap;
+    constexpr double open = 1e-6;
     const double h = view.substep;
     for (std::uint32_t k = 0; k < points_.size(); ++k) {
         const Point& p = points_[k];
@@ -407,8 +409,7 @@ void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
         const double now = gap(c.rows, c.rows.points[p.number], before(a), before(b)), end = gap_at(p, h);
         if (now <= 0 && !p.struck) continue;
         const bool is_free = p.comes || (p.struck && end >= 0 && c.restitution > 0);
-        double wanted = std::max(end - h * speed_at(p, h) - c.rows.lead, open);
-        if (is_free) wanted += wide + (end < 0 ? -end : 0);
+        const double wanted = std::max(end - h * speed_at(p, h) - c.rows.lead, open) + (is_free ? wide : 0);
         float& separation = separation_of(p, view);
         bent_.push_back({k, separation, is_free});
         separation += static_cast<float>(wanted - now);
@@ -418,9 +419,9 @@ void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
 template <int D>
 void ImpactSolver<D>::straighten(const ImpactView<D>& view, bool at_the_end) {
     std::erase_if(bent_, [&](const Bent& bent) {
-        if (bent.to_the_end && !at_the_end) return false;
-        separation_of(points_[bent.point], view) = bent.separation;
-        return true;
+        const bool goes_on = bent.to_the_end && !at_the_end;
+        separation_of(points_[bent.point], view) = bent.separation + (goes_on ? wide : 0);
+        return !goes_on;
     });
 }
 
