@@ -47,8 +47,9 @@ class ChosenRows {
 
 }  // namespace
 
-/// Block principal pivoting: all rows on the wrong side change it at once, and as long as this does not get on,
-/// only the last of them (J. Júdice, F. Pires 1994), which always ends. A little is added to the diagonal.
+/// Block principal pivoting: all rows on the wrong side change it at once, and as long as this does not get
+/// on, only the last of them (J. Júdice, F. Pires 1994), which always ends. A little is added to the
+/// diagonal.
 void solve_complementarity(std::span<const double> matrix, std::span<const double> b, std::span<double> x) {
     const std::size_t n = b.size();
     double largest = 0, fastest = 0;

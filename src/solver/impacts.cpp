@@ -32,12 +32,13 @@ ContactRows<D, double> widen(const ContactRows<D, float>& rows) {
 double widen(float weight) { return weight; }
 Symmetric3<double> widen(const Symmetric3<float>& weight) { return narrow<double>(weight); }
 
-/// The first time at which s + v t + ½ a t² falls to zero, or infinity.
+/// The first time at which s + v t + ½ a t² falls to zero, or infinity. Where it is below and falls, when it
+/// did.
 double time_to_close(double s, double v, double a) {
     const double squared = v * v - 2 * a * s;
     if (!(squared > 0)) return infinite;
     const double root = std::sqrt(squared);
-    if (v < 0) return std::max(0.0, 2 * s / (root - v));
+    if (v < 0) return 2 * s / (root - v);
     return a < 0 ? (v + root) / -a : infinite;
 }
 
@@ -109,8 +110,8 @@ void ImpactSolver<D>::load(Flight& f, const ImpactView<D>& view) {
     f.start.turned = narrow<double>(now.turned);
     f.blow = {};
     f.struck = false;
-    // What constraints did in the sub-step before may be the echo of a blow: what is more than the outer forces
-    // could ask for is not believed.
+    // What constraints did in the sub-step before may be the echo of a blow: what is more than the outer
+    // forces could ask for is not believed.
     const double h = view.substep;
     const Vec<D> outer = narrow<double>(drive.acceleration), held = narrow<double>(drive.warm) * (1 / h);
     f.acceleration = outer - f.start.v * (static_cast<double>(drive.damping) / h);
@@ -130,8 +131,8 @@ void ImpactSolver<D>::add_contact(const Candidate& c, const ImpactView<D>& view)
     taken_[c.section][c.index] = 1;
     const std::uint32_t a = flight_of(store.a(c.index), view), b = flight_of(store.b(c.index), view);
     const auto contact = static_cast<std::uint32_t>(contacts_.size());
-    contacts_.push_back({c.section, c.index, a, b, store.restitution(c.index),
-                         widen<D>(store.rows().get(c.index))});
+    contacts_.push_back(
+        {c.section, c.index, a, b, store.restitution(c.index), widen<D>(store.rows().get(c.index))});
     for (std::uint32_t k = 0; k < Rows::capacity; ++k) {
         if (!(contacts_.back().rows.points[k].mass > 0)) continue;
         points_.push_back({contact, k, 0, 0, false, false});
@@ -197,7 +198,8 @@ double ImpactSolver<D>::speed_at(const Point& p, double time) const {
 }
 
 /// When, from a time on, the point is struck so that it may bounce or its body is thrown against something;
-/// never, if it is left to the solver.
+/// never, if it is left to the solver. Bodies that come on to each other and overlap at the start of the
+/// sub-step did not see each other in time: they were struck before, as their paths tell.
 template <int D>
 void ImpactSolver<D>::find_impact(Point& p, double from, const ImpactView<D>& view) const {
     const double h = view.substep, start = gap_at(p, from), end = gap_at(p, from + h);
@@ -205,7 +207,12 @@ void ImpactSolver<D>::find_impact(Point& p, double from, const ImpactView<D>& vi
     const double speed = (4 * middle - 3 * start - end) / h;
     const double acceleration = 4 * (start - 2 * middle + end) / (h * h);
     p.comes = false;
-    p.time = start <= 0 && speed_at(p, from) < 0 ? from : from + time_to_close(start, speed, acceleration);
+    if (start <= 0 && speed_at(p, from) < 0) {
+        const double ago = from > 0 ? 0 : time_to_close(start, speed, acceleration);
+        p.time = from + (ago < 0 && ago > -view.step ? ago : 0);
+    } else {
+        p.time = from + std::max(0.0, time_to_close(start, speed, acceleration));
+    }
     if (p.time == infinite) return;
     p.speed = -speed_at(p, p.time);
     const Contact& c = contacts_[p.contact];
@@ -268,7 +275,8 @@ bool ImpactSolver<D>::strike_first(const ImpactView<D>& view) {
     apply(time);
     for (std::uint32_t k = 0; k < points_.size(); ++k) {
         const Contact& c = contacts_[points_[k].contact];
-        const bool taken = (c.a < involved_.size() && involved_[c.a]) || (c.b < involved_.size() && involved_[c.b]);
+        const bool taken =
+            (c.a < involved_.size() && involved_[c.a]) || (c.b < involved_.size() && involved_[c.b]);
         if (taken || k >= count) find_impact(points_[k], time, view);
     }
     for (const std::uint32_t f : involved_flights_) involved_[f] = 0;
@@ -286,8 +294,8 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
         const auto approach = [&](std::uint32_t k) {
             const Contact& c = contacts_[points_[k].contact];
             const NormalRow<D, double>& row = c.rows.points[points_[k].number];
-            return -dot(c.rows.normal, relative_velocity(bodies_[c.a].motion, bodies_[c.b].motion, row.arm_a,
-                                                         row.arm_b));
+            return -dot(c.rows.normal,
+                        relative_velocity(bodies_[c.a].motion, bodies_[c.b].motion, row.arm_a, row.arm_b));
         };
         double fastest = 0;
         for (const std::uint32_t k : touching_) fastest = std::max(fastest, approach(k));
@@ -301,8 +309,17 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
             const NormalRow<D, double>& row = c.rows.points[points_[k].number];
             const double restitution = bounces && now > dead_share * speed ? c.restitution : 0;
             chosen_.push_back(k);
-            strikes_.push_back({c.a, c.b, c.rows.normal, row.arm_a, row.arm_b, tangents_of(c.rows),
-                                c.rows.surface_speed, restitution, c.rows.friction, 0, {}});
+            strikes_.push_back({c.a,
+                                c.b,
+                                c.rows.normal,
+                                row.arm_a,
+                                row.arm_b,
+                                tangents_of(c.rows),
+                                c.rows.surface_speed,
+                                restitution,
+                                c.rows.friction,
+                                0,
+                                {}});
         }
         reflection_.reflect(bodies_, strikes_);
         work += touching_.size() + 16 * chosen_.size();
@@ -322,9 +339,11 @@ void ImpactSolver<D>::tally(const ImpactPoint<D>& struck, const Point& p, const 
     const Contact& c = contacts_[p.contact];
     auto& rows = view.stores[c.section]->rows();
     const ContactRows<D, float> model;
-    rows.at(c.index, field_of(model, model.points[p.number].total_impulse)) += static_cast<float>(struck.impulse);
+    rows.at(c.index, field_of(model, model.points[p.number].total_impulse)) +=
+        static_cast<float>(struck.impulse);
     for (int k = 0; k < D - 1; ++k)
-        rows.at(c.index, field_of(model, model.total_friction[k])) += static_cast<float>(struck.tangential[k]);
+        rows.at(c.index, field_of(model, model.total_friction[k])) +=
+            static_cast<float>(struck.tangential[k]);
 }
 
 template <int D>
@@ -347,7 +366,7 @@ void ImpactSolver<D>::apply(double time) {
 
 template <int D>
 void ImpactSolver<D>::strike(const ImpactView<D>& view) {
-    straighten(view, true);
+    straighten(view);
     for (Flight& f : flights_) load(f, view);
     for (Point& p : points_) p.struck = false;
     if (contacts_.empty()) {
@@ -356,7 +375,8 @@ void ImpactSolver<D>::strike(const ImpactView<D>& view) {
         for (Point& p : points_) find_impact(p, 0, view);
     }
     const std::size_t most_impacts = 64 + 8 * contacts_.size();
-    for (std::size_t count = 0; count < most_impacts && strike_first(view); ++count) {}
+    for (std::size_t count = 0; count < most_impacts && strike_first(view); ++count) {
+    }
 
     for (const Flight& f : flights_) {
         if (!f.struck || f.slot < view.bodies.first_movable) continue;
@@ -372,8 +392,9 @@ void ImpactSolver<D>::strike(const ImpactView<D>& view) {
               body.motion.w, drive.lost_spin);
         split(Vec<D>(narrow<double>(drive.start) + narrow<double>(drive.lost_before) + f.blow.v), drive.start,
               drive.lost_before);
-        split(Angular<D>(narrow<double>(drive.start_spin) + narrow<double>(drive.lost_spin_before) + f.blow.w),
-              drive.start_spin, drive.lost_spin_before);
+        split(
+            Angular<D>(narrow<double>(drive.start_spin) + narrow<double>(drive.lost_spin_before) + f.blow.w),
+            drive.start_spin, drive.lost_spin_before);
         view.drives->set(f.slot, drive);
         scatter_velocity(view.bodies, &f.slot, body, false);
     }
@@ -387,10 +408,12 @@ float& ImpactSolver<D>::separation_of(const Point& p, const ImpactView<D>& view)
     return view.stores[c.section]->rows().at(c.index, field_of(model, model.points[p.number].separation));
 }
 
-/// The solver lets bodies approach each other by the gap now over the length of the sub-step. For a body that was
-/// struck at τ this has to be the gap at which its path after τ would have begun. Where that is an overlap, the
-/// body was struck here and is on its way out: then any open gap will do. And a gap that the solver would take
-/// for closed is made a little wider where the body bounced, or will bounce, by itself.
+/// The solver lets bodies approach each other by the gap now over the length of the sub-step, as fast as they
+/// are at its end. For a body that was struck at τ the gap now has to be that at which its path after τ would
+/// have begun, and more by what it falls less than that. Where this is an overlap, the body was struck here
+/// and is on its way out: then any open gap will do. While velocities are relaxed, a gap that is open at the
+/// end has to look so, though what it falls less is not yet taken off; and where the body bounced or will
+/// bounce by itself, it must not be so small that the solver takes it for closed.
 template <int D>
 void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
     constexpr double open = 1e-6;
@@ -399,7 +422,8 @@ void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
         const Point& p = points_[k];
         const Contact& c = contacts_[p.contact];
         const Flight &a = flights_[c.a], &b = flights_[c.b];
-        if (!a.struck && !b.struck && !p.comes) continue;
+        const bool blown = a.struck || b.struck, may_bounce = c.restitution > 0;
+        if (!blown && !may_bounce) continue;
         const auto before = [](const Flight& f) {
             Motion<D, double> m = f.start;
             m.moved -= f.blow.moved;
@@ -407,27 +431,28 @@ void ImpactSolver<D>::bend_gaps(const ImpactView<D>& view) {
             return m;
         };
         const double now = gap(c.rows, c.rows.points[p.number], before(a), before(b)), end = gap_at(p, h);
-        if (now <= 0 && !p.struck) continue;
-        const bool is_free = p.comes || (p.struck && end >= 0 && c.restitution > 0);
-        const double wanted = std::max(end - h * speed_at(p, h) - c.rows.lead, open) + (is_free ? wide : 0);
+        const double way = h * speed_at(p, h) + c.rows.lead;
+        if ((now <= 0 && !p.struck) || (!blown && end <= 0)) continue;
+        const bool flies = may_bounce && end >= 0, bounces = p.comes || (p.struck && flies);
+        const double more = (bounces ? wide : 0.0);
+        const double wanted = std::max(end - way, open) + more;
+        const double relaxed = flies ? end - (gap_at(p, 0) + way) + more : 0;
+        if (!blown && wanted <= now && relaxed <= 0) continue;
         float& separation = separation_of(p, view);
-        bent_.push_back({k, separation, is_free});
+        bent_.push_back({k, separation, separation + static_cast<float>(relaxed)});
         separation += static_cast<float>(wanted - now);
     }
 }
 
 template <int D>
-void ImpactSolver<D>::straighten(const ImpactView<D>& view, bool at_the_end) {
-    std::erase_if(bent_, [&](const Bent& bent) {
-        const bool goes_on = bent.to_the_end && !at_the_end;
-        separation_of(points_[bent.point], view) = bent.separation + (goes_on ? wide : 0);
-        return !goes_on;
-    });
+void ImpactSolver<D>::straighten(const ImpactView<D>& view) {
+    for (const Bent& bent : bent_) separation_of(points_[bent.point], view) = bent.separation;
+    bent_.clear();
 }
 
 template <int D>
 void ImpactSolver<D>::shift(const ImpactView<D>& view) {
-    straighten(view, false);
+    for (const Bent& bent : bent_) separation_of(points_[bent.point], view) = bent.relaxed;
     for (const Flight& f : flights_) {
         if (!f.struck || f.slot < view.bodies.first_movable) continue;
         Body<D, float> body = gather<float>(view.bodies, &f.slot);

@@ -23,14 +23,14 @@ struct ImpactView {
 
 /// Impacts with restitution, each at its own time within a sub-step, and those that come together at once.
 ///
-/// Before a sub-step is solved, its bodies are on their way: each flies with a constant acceleration a by outer
-/// forces and by what constraints did in the sub-step before. The gap at a point is a quadratic function of
-/// time, so the time τ of its impact is known. At the first of these times all points that have closed and at
-/// which bodies approach each other are reflected together, then again those at which bodies approach each
-/// other now, and so on until nobody does (see `Reflection`). What touches at rest is left out until something
-/// comes on to it, so that a blow runs through a row of balls in the right order, and what is symmetric stays so,
-/// as all of it is reflected at once. Then the next time is looked for: chains of impacts, and several bounces
-/// of one body, fit into a sub-step.
+/// Before a sub-step is solved, its bodies are on their way: each flies with a constant acceleration a by
+/// outer forces and by what constraints did in the sub-step before. The gap at a point is a quadratic
+/// function of time, so the time τ of its impact is known. At the first of these times all points that have
+/// closed and at which bodies approach each other are reflected together, then again those at which bodies
+/// approach each other now, and so on until nobody does (see `Reflection`). What touches at rest is left out
+/// until something comes on to it, so that a blow runs through a row of balls in the right order, and what is
+/// symmetric stays so, as all of it is reflected at once. Then the next time is looked for: chains of
+/// impacts, and several bounces of one body, fit into a sub-step.
 ///
 /// A blow that changes a velocity by Δv at τ makes the path x(t) = x₀ + v₀ t + ½ a t² go on as
 ///
@@ -38,12 +38,12 @@ struct ImpactView {
 ///
 /// So it is a change of the velocity and of the place at the start of the sub-step, exact for flight, and the
 /// solver, which knows nothing of it, goes on from there. The places are changed when it has integrated them,
-/// since those paths lead through the obstacle before τ. Until then the points of these bodies are given the gaps
-/// that their paths would have had (`bend_gaps`).
+/// since those paths lead through the obstacle before τ. For the sub-step the points of these bodies are
+/// given the gaps with which the solver sees what their paths will do (`bend_gaps`).
 ///
-/// All this is done in double precision by one worker, in the order of the contacts' numbers. Time is bounded:
-/// when a blow has cost too much, approach that is slow beside it is left to the solver, which takes it away
-/// without a bounce.
+/// All this is done in double precision by one worker, in the order of the contacts' numbers. Time is
+/// bounded: when a blow has cost too much, approach that is slow beside it is left to the solver, which takes
+/// it away without a bounce.
 template <int D>
 class ImpactSolver {
   public:
@@ -54,7 +54,7 @@ class ImpactSolver {
     /// When its positions have been integrated.
     void shift(const ImpactView<D>& view);
     /// After the last sub-step.
-    void end(const ImpactView<D>& view) { straighten(view, true); }
+    void end(const ImpactView<D>& view) { straighten(view); }
 
   private:
     using Rows = ContactRows<D, double>;
@@ -66,8 +66,8 @@ class ImpactSolver {
     /// A body of a contact that is looked at.
     struct Flight {
         std::uint32_t slot = 0;
-        bool listed = false;  ///< are all its contacts looked at?
-        bool struck = false;  ///< in this sub-step
+        bool listed = false;        ///< are all its contacts looked at?
+        bool struck = false;        ///< in this sub-step
         Motion<D, double> start{};  ///< at the start of the sub-step, with the blows since
         Vec<D> acceleration{};
         Angular<D> spin_acceleration{};
@@ -86,12 +86,10 @@ class ImpactSolver {
         bool struck = false;  ///< in this sub-step
         bool comes = false;   ///< it will be struck soon after the sub-step
     };
-    /// The separation of a point as it stood in its row, until that holds again: when positions have been
-    /// integrated, or at the end of the sub-step.
+    /// The separation of a point as it stood in its row, and what it is while velocities are relaxed.
     struct Bent {
         std::uint32_t point;
-        float separation;
-        bool to_the_end;
+        float separation, relaxed;
     };
 
     void reset(const ImpactView<D>& view);
@@ -109,7 +107,7 @@ class ImpactSolver {
     void run_rounds(double time, double speed, const ImpactView<D>& view);
     void apply(double time);
     void bend_gaps(const ImpactView<D>& view);
-    void straighten(const ImpactView<D>& view, bool at_the_end);
+    void straighten(const ImpactView<D>& view);
     float& separation_of(const Point& point, const ImpactView<D>& view) const;
     void tally(const ImpactPoint<D>& struck, const Point& point, const ImpactView<D>& view) const;
 
@@ -124,8 +122,8 @@ class ImpactSolver {
     std::vector<std::vector<std::uint8_t>> taken_;  ///< by section and index: is the contact looked at?
 
     // Of one impact.
-    std::vector<ImpactBody<D>> bodies_;      ///< by flight
-    std::vector<std::uint8_t> involved_;     ///< by flight
+    std::vector<ImpactBody<D>> bodies_;   ///< by flight
+    std::vector<std::uint8_t> involved_;  ///< by flight
     std::vector<std::uint32_t> involved_flights_;
     std::vector<std::uint32_t> touching_;    ///< points that have closed, of these
     std::vector<std::uint8_t> is_touching_;  ///< by point

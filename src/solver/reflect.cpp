@@ -141,8 +141,8 @@ void Reflection<D>::solve_normals(std::span<ImpactBody<D>> bodies, std::span<Imp
     double taken = 0, squared = 0;
     for (std::size_t i = 0; i < n; ++i) {
         taken -= push_[i] * speed_[i];
-        squared += push_[i] * (dot(points[group[i]].normal, speed_between<D>(bodies, points[group[i]])) -
-                               speed_[i]);
+        squared +=
+            push_[i] * (dot(points[group[i]].normal, speed_between<D>(bodies, points[group[i]])) - speed_[i]);
     }
     if (!(squared > 0)) return;
     const double scale = taken / squared;
@@ -185,8 +185,7 @@ void Reflection<D>::solve_friction(std::span<ImpactBody<D>> bodies, std::span<Im
             if (!(limit > 0)) continue;
             const ImpactBody<D>&a = bodies[p.a], &b = bodies[p.b];
             double weight = 0;
-            for (const Vec<D>& t : p.tangents)
-                weight += compliance(t, p.arm_a, p.arm_b, a.weight, b.weight);
+            for (const Vec<D>& t : p.tangents) weight += compliance(t, p.arm_a, p.arm_b, a.weight, b.weight);
             if constexpr (D == 3) {  // the larger eigenvalue of the 2×2 system, by its trace and determinant
                 const auto [t1, t2] = p.tangents;
                 Motion<3, double> ma{}, mb{};

@@ -26,7 +26,7 @@ struct ImpactPoint {
     std::array<Vec<D>, D - 1> tangents{};
     std::array<double, D - 1> surface_speed{};
     double restitution = 0, friction = 0;
-    double impulse = 0;                        ///< result: along the normal, on b, N·s
+    double impulse = 0;                      ///< result: along the normal, on b, N·s
     std::array<double, D - 1> tangential{};  ///< result: along the tangents
 };
 
@@ -42,8 +42,8 @@ struct ImpactPoint {
 ///
 ///     E' − E = −½ λᵀ (A − e A e) λ
 ///
-/// with e as a diagonal matrix. That is a loss where all e are equal; where they are not it may be a gain, and
-/// then all e are made smaller by the same factor, until it is none.
+/// with e as a diagonal matrix. That is a loss where all e are equal; where they are not it may be a gain,
+/// and then all e are made smaller by the same factor, until it is none.
 ///
 /// Friction takes as much energy as it can with impulses |β| ≤ μ (1 + e) λ at each point (Coulomb).
 ///
@@ -66,8 +66,9 @@ class Reflection {
     std::vector<double> matrix_, speed_, push_;
 };
 
-/// Solves 0 ≤ x ⟂ A x + b ≥ 0 for a symmetric, positive semi-definite matrix, row by row, of b.size() rows. The
-/// result does not depend on the order of the rows, but for rounding: where A is singular, it is the shortest.
+/// Solves 0 ≤ x ⟂ A x + b ≥ 0 for a symmetric, positive semi-definite matrix, row by row, of b.size() rows.
+/// The result does not depend on the order of the rows, but for rounding: where A is singular, it is the
+/// shortest.
 void solve_complementarity(std::span<const double> matrix, std::span<const double> b, std::span<double> x);
 
 }  // namespace carom::detail

@@ -5,13 +5,18 @@
 
 #include "solver/solver.hpp"
 
-/// Restitution. Impacts that are not taken together come once, at the end of the step, for the points that were
-/// hit.
+/// Restitution. Impacts that are not taken together come once, at the end of the step, for the points that
+/// were hit.
 namespace carom::detail {
 
 template <int D>
 ImpactView<D> Solver<D>::impact_view(const SolverInput<D>& input) {
-    return {stores_, view_, &drives_, slots_.size(), input.step, input.step / input.substeps,
+    return {stores_,
+            view_,
+            &drives_,
+            slots_.size(),
+            input.step,
+            input.step / input.substeps,
             input.restitution_threshold};
 }
 
@@ -127,8 +132,8 @@ void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                 \
-    template void Solver<D>::expect_impacts(const SolverInput<D>&); \
+#define CAROM_INSTANTIATE(D)                                              \
+    template void Solver<D>::expect_impacts(const SolverInput<D>&);       \
     template ImpactView<D> Solver<D>::impact_view(const SolverInput<D>&); \
     template void Solver<D>::bounce(const SolverInput<D>&);
 CAROM_INSTANTIATE(2)

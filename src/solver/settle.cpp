@@ -128,8 +128,8 @@ void Solver<D>::mark_struck_bodies() {
 }
 
 /// The many small changes of settling are each rounded to the size of the velocity. So the velocities of
-/// these bodies are made anew, in one sum, from the impulses that came out. Those on joints stay as they are: what
-/// joints do is not in the sum.
+/// these bodies are made anew, in one sum, from the impulses that came out. Those on joints stay as they are:
+/// what joints do is not in the sum.
 template <int D>
 void Solver<D>::sum_struck() {
     mark_struck_bodies();

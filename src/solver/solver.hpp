@@ -32,7 +32,7 @@ struct SolverInput {
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
-    bool impacts_together = true;  ///< else one after the other, at the end of the step
+    bool impacts_together = true;                    ///< else one after the other, at the end of the step
     std::span<JointRecord<D>> joints{};              ///< all; impulses are read and written
     std::span<const std::uint32_t> active_joints{};  ///< indices of those that hold a body which moves freely
     std::span<CouplingRecord<D>> couplings{};        ///< the same for these

@@ -15,7 +15,7 @@ namespace {
 /// boxes, so this is little.
 constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
 
-/// What bounces may be struck within a step, and then strike what is near.
+/// What bounces may turn within a step, or be struck, and then strike what is near.
 template <int D>
 double least_margin(const ShapeRecord<D>& shape) {
     return shape.definition->material.restitution > 0 ? 0.5 * speculative_distance : 0;
@@ -133,7 +133,8 @@ void WorldState<D>::refresh_boxes(double dt) {
             const bool is_ball = shape.kind == ShapeKind::ball;
             const double arm = is_ball ? length(shape.a - masses[body].center) : masses[body].radius;
             const double turning = std::min(spin * dt, 2.0) * arm;
-            const Aabb<D> swept = grown(tight, turning + falling, way);
+            const double bouncing = least_margin(shapes[id.index]) > 0 ? length(way) : 0;
+            const Aabb<D> swept = grown(tight, turning + falling + bouncing, way);
             if (contains(fat_boxes[id.index], swept)) continue;
             const Vec<D> size = tight.upper - tight.lower;
             double smallest = size.x;

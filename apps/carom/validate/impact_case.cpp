@@ -92,7 +92,8 @@ class Cradle {
             if (setting_ == Setting::hung)
                 worst = std::max(worst, std::fabs(own_energy(ids_[i]) / one - leaves));
             else
-                worst = std::max(worst, length(world_.velocity(ids_[i]) - in_plane<D>(leaves * speed, 0)) / speed);
+                worst = std::max(worst,
+                                 length(world_.velocity(ids_[i]) - in_plane<D>(leaves * speed, 0)) / speed);
         }
         return worst;
     }
@@ -145,7 +146,8 @@ void add_cradles(std::vector<Result>& results) {
                     change = std::max(change, std::fabs(cradle.gain()));
                 }
             }
-            const std::string what = fmt::format("{}D, cradle {}, gaps of {:g} m: ", D, name_of(setting), gap);
+            const std::string what =
+                fmt::format("{}D, cradle {}, gaps of {:g} m: ", D, name_of(setting), gap);
             const char* of = setting == Setting::hung ? "energy of each ball, worst error"
                                                       : "velocity of each ball, worst error";
             results.push_back(absolute(what + of, 0, worst, bounds));
@@ -170,8 +172,8 @@ void add_cradles(std::vector<Result>& results) {
 
 // Mirror symmetry. --------------------------------------------------------------------------------------
 
-/// What is thrown together: bodies in the order of their places, each with the index of its mirror image in the
-/// x axis. Fixed ones have no image.
+/// What is thrown together: bodies in the order of their places, each with the index of its mirror image in
+/// the x axis. Fixed ones have no image.
 template <int D>
 struct Scene {
     Vec<D> gravity{};
@@ -247,8 +249,8 @@ Scene<D> box_on_balls(const Material& material) {
 
 /// Runs the scene with the bodies added in this order, and returns how they move in the end, by their places.
 template <int D>
-std::vector<std::pair<Vec<D>, Angular<D>>> run_scene(const Scene<D>& scene, const std::vector<std::size_t>& order,
-                                                     double& energy) {
+std::vector<std::pair<Vec<D>, Angular<D>>> run_scene(const Scene<D>& scene,
+                                                     const std::vector<std::size_t>& order, double& energy) {
     World<D> world = empty_space<D>();
     std::vector<BodyId<D>> ids(order.size());
     for (const std::size_t i : order) ids[i] = world.add_body(scene.bodies[i]);
@@ -281,7 +283,8 @@ void add_symmetric(std::vector<Result>& results, std::string_view name, const Sc
     std::vector<std::pair<Vec<D>, Angular<D>>> first;
     for (int round = 0; round < 6; ++round) {
         if (round == 1) std::reverse(order.begin(), order.end());
-        for (std::size_t i = order.size(); round > 1 && i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+        for (std::size_t i = order.size(); round > 1 && i > 1; --i)
+            std::swap(order[i - 1], order[random() % i]);
         double energy = 0;
         const auto motions = run_scene(scene, order, energy);
         if (first.empty()) first = motions;
@@ -292,8 +295,8 @@ void add_symmetric(std::vector<Result>& results, std::string_view name, const Sc
             worst = std::max(worst, length(motions[i].first - first[i].first) / speed);
         }
     }
-    const std::string what = fmt::format("{}D, {}, e = {:g}, friction {:g}: ", D, name, material.restitution,
-                                         material.friction);
+    const std::string what =
+        fmt::format("{}D, {}, e = {:g}, friction {:g}: ", D, name, material.restitution, material.friction);
     results.push_back(absolute(what + "asymmetry of velocities, six orders", 0, worst, {5e-2, 1e-6}));
     if (material.restitution == 1 && material.friction == 0)
         results.push_back(absolute(what + "energy, worst change", 0, change, {1e-2, 1e-6}));
