@@ -5,13 +5,40 @@
 
 #include "solver/solver.hpp"
 
-/// Restitution, once at the end of the step, for the points that were hit.
+/// Restitution. Impacts that are not taken together come once, at the end of the step, for the points that
+/// were hit.
 namespace carom::detail {
+
+template <int D>
+ImpactView<D> Solver<D>::impact_view(const SolverInput<D>& input) {
+    return {stores_,
+            view_,
+            &drives_,
+            slots_.size(),
+            input.step,
+            input.step / input.substeps,
+            input.restitution_threshold};
+}
+
+/// Before the first sub-step: what may bounce?
+template <int D>
+void Solver<D>::expect_impacts(const SolverInput<D>& input) {
+    impacts_.clear();
+    stores_.clear();
+    some_impacts_ = false;
+    if (std::ranges::none_of(sections_, [](const Section& s) { return s.contacts.some_bounce(); })) return;
+    if (!input.impacts_together) {
+        note_impacts();
+        find_impacts();
+        return;
+    }
+    for (Section& s : sections_) stores_.push_back(&s.contacts);
+    some_impacts_ = impact_solver_.find_candidates(impact_view(input));
+}
 
 /// Lists the points that may bounce, in the order of the world's contacts.
 template <int D>
 void Solver<D>::note_impacts() {
-    impacts_.clear();
     for (std::uint32_t number = 0; number < sections_.size(); ++number) {
         const ContactStore<D>& store = sections_[number].contacts;
         if (!store.some_bounce()) continue;
@@ -105,9 +132,9 @@ void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
     }
 }
 
-#define CAROM_INSTANTIATE(D)                 \
-    template void Solver<D>::note_impacts(); \
-    template void Solver<D>::find_impacts(); \
+#define CAROM_INSTANTIATE(D)                                              \
+    template void Solver<D>::expect_impacts(const SolverInput<D>&);       \
+    template ImpactView<D> Solver<D>::impact_view(const SolverInput<D>&); \
     template void Solver<D>::bounce(const SolverInput<D>&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -115,7 +115,7 @@ void Solver<D>::mark_struck_bodies() {
     struck_slots_.clear();
     is_struck_.resize(std::max<std::size_t>(is_struck_.size(), slots_.size()), 0);
     const auto mark = [&](std::uint32_t slot) {
-        if (slot < view_.first_movable || is_struck_[slot]) return;
+        if (slot < view_.first_movable || is_struck_[slot] || jointed_[slot]) return;
         is_struck_[slot] = 1;
         struck_slots_.push_back(slot);
     };
@@ -128,7 +128,8 @@ void Solver<D>::mark_struck_bodies() {
 }
 
 /// The many small changes of settling are each rounded to the size of the velocity. So the velocities of
-/// these bodies are made anew, in one sum, from the impulses that came out.
+/// these bodies are made anew, in one sum, from the impulses that came out. Those on joints stay as they are:
+/// what joints do is not in the sum.
 template <int D>
 void Solver<D>::sum_struck() {
     mark_struck_bodies();

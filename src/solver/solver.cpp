@@ -126,20 +126,21 @@ void Solver<D>::work(const SolverInput<D>& input, const Crew& crew) {
     });
     crew.meet();
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->begin(bodies, h_); });
+    crew.alone([&] { expect_impacts(input); });
+    step_through(input, crew);
     crew.alone([&] {
-        note_impacts();
-        find_impacts();
+        if (some_impacts_) impact_solver_.end(impact_view(input));
+        bounce(input);
     });
-    step_through(input.substeps, crew);
-    crew.alone([&] { bounce(input); });
     joints_.store(joint_input(input), crew);
     store_bodies(input, crew);
 }
 
 template <int D>
-void Solver<D>::step_through(int substeps, const Crew& crew) {
+void Solver<D>::step_through(const SolverInput<D>& input, const Crew& crew) {
     each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_velocities(bodies, h_); });
-    for (int i = 0; i < substeps; ++i) {
+    for (int i = 0; i < input.substeps; ++i) {
+        if (some_impacts_) crew.alone([&] { impact_solver_.strike(impact_view(input)); });
         joints_.solve(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
@@ -152,6 +153,7 @@ void Solver<D>::step_through(int substeps, const Crew& crew) {
             if (some_struck_) settle_struck<true>();
         });
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
+        if (some_impacts_) crew.alone([&] { impact_solver_.shift(impact_view(input)); });
         joints_.relax(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.relax(span, view_, sub_);
@@ -162,7 +164,7 @@ void Solver<D>::step_through(int substeps, const Crew& crew) {
             sum_struck();
             note_blows();
         });
-        const bool last = i + 1 == substeps;
+        const bool last = i + 1 == input.substeps;
         each_body_share(crew, [&](const BodySpan<D>& bodies) {
             (last ? passes_->finish : passes_->finish_and_integrate_velocities)(bodies, h_);
         });

@@ -15,6 +15,7 @@
 #include "solver/bounce.hpp"
 #include "solver/colours.hpp"
 #include "solver/contact_store.hpp"
+#include "solver/impacts.hpp"
 #include "solver/joint_solver.hpp"
 #include "solver/passes.hpp"
 
@@ -31,6 +32,7 @@ struct SolverInput {
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
+    bool impacts_together = true;                    ///< else one after the other, at the end of the step
     std::span<JointRecord<D>> joints{};              ///< all; impulses are read and written
     std::span<const std::uint32_t> active_joints{};  ///< indices of those that hold a body which moves freely
     std::span<CouplingRecord<D>> couplings{};        ///< the same for these
@@ -137,7 +139,7 @@ class Solver {
     void set_lengths(const SolverInput<D>& input);
     void mark_jointed(const SolverInput<D>& input);
     void work(const SolverInput<D>& input, const Crew& crew);
-    void step_through(int substeps, const Crew& crew);
+    void step_through(const SolverInput<D>& input, const Crew& crew);
     bool is_small() const { return count_ < 256; }  ///< so that it is not worth several workers
     template <class Visit>
     void each_section(Visit&& visit) {
@@ -226,6 +228,8 @@ class Solver {
     static float speed_taken(const LaneStore<Rows>& rows, std::size_t index);
 
     // restitution.cpp
+    void expect_impacts(const SolverInput<D>& input);
+    ImpactView<D> impact_view(const SolverInput<D>& input);
     void note_impacts();
     void find_impacts();
     void bounce(const SolverInput<D>& input);
@@ -254,6 +258,9 @@ class Solver {
         wanted_;                   ///< blocks with such contacts, and their widths
     bool some_struck_ = false;     ///< in this sub-step
     std::vector<Impact> impacts_;  ///< points with restitution
+    ImpactSolver<D> impact_solver_;
+    std::vector<ContactStore<D>*> stores_;  ///< of all sections
+    bool some_impacts_ = false;             ///< may anything bounce in this step, and are impacts together?
 };
 
 }  // namespace carom::detail

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/meeting.hpp"
 #include "world/state.hpp"
 
 // Where the shapes are: each has a box that is larger than it by a margin, in one of three trees.
@@ -13,6 +14,12 @@ namespace {
 /// body that hardly moves keeps its box. A crowd pays more for neighbours that do not touch than for new
 /// boxes, so this is little.
 constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
+
+/// What bounces may turn within a step, or be struck, and then strike what is near.
+template <int D>
+double least_margin(const ShapeRecord<D>& shape) {
+    return shape.definition->material.restitution > 0 ? 0.5 * speculative_distance : 0;
+}
 
 template <int D>
 Aabb<D> grown(const Aabb<D>& box, double margin, const Vec<D>& motion) {
@@ -56,7 +63,7 @@ void WorldState<D>::mark_moved(std::uint32_t shape) {
 template <int D>
 void WorldState<D>::insert_leaf(std::uint32_t shape) {
     ShapeRecord<D>& s = shapes[shape];
-    fat_boxes[shape] = bounds(s.shape, frame_of(s.body));
+    fat_boxes[shape] = grown(bounds(s.shape, frame_of(s.body)), least_margin(s), Vec<D>{});
     s.leaf = Tree<D>::none;
     unplanted.push_back(shape);
     some_unplanted.store(true, std::memory_order_relaxed);
@@ -126,12 +133,14 @@ void WorldState<D>::refresh_boxes(double dt) {
             const bool is_ball = shape.kind == ShapeKind::ball;
             const double arm = is_ball ? length(shape.a - masses[body].center) : masses[body].radius;
             const double turning = std::min(spin * dt, 2.0) * arm;
-            const Aabb<D> swept = grown(tight, turning + falling, way);
+            const double bouncing = least_margin(shapes[id.index]) > 0 ? length(way) : 0;
+            const Aabb<D> swept = grown(tight, turning + falling + bouncing, way);
             if (contains(fat_boxes[id.index], swept)) continue;
             const Vec<D> size = tight.upper - tight.lower;
             double smallest = size.x;
             for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
-            const double margin = std::min(box_margin, margin_share * smallest);
+            const double margin =
+                std::max(std::min(box_margin, margin_share * smallest), least_margin(shapes[id.index]));
             fat_boxes[id.index] = grown(swept, margin, Vec<D>{});
             mark_moved(id.index);
             new_leaves.push_back(shapes[id.index].leaf);

@@ -112,6 +112,16 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         meet_ahead(c, cache, dt);
         if (c.count > 0) cache.forget();  // these points are of another time
     }
+    if (c.count == 0 && c.restitution > 0 && definition.continuous) {
+        // One of the bodies may be struck within the step and then come here.
+        const double struck_way = dt * (length(sa.velocity) + length(sb.velocity)) + speculative_distance;
+        const double far = std::min(struck_way, smaller_radius(ma, mb));
+        if (cache.least_gap(pose, mb.radius) <= far && far > reach) {
+            touch(c, sa, sb, far, cache);
+            set_points(cache, sa, sb, far, c);
+            if (c.count > 0) cache.forget();
+        }
+    }
     if (c.special) {
         pass_one_way(c, old.count > 0 || old.passing);
         drag_along(c);

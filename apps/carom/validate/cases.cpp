@@ -15,6 +15,7 @@ std::span<const Case> validation_cases() {
         {"B4", "rolling down an incline", roll_down},
         {"B6", "a ball bounces", bouncing_ball},
         {"B7", "a rod strikes a smooth floor", rod_strikes},
+        {"B8", "impacts at once: Newton's cradle, and what is symmetric stays so", simultaneous_impacts},
         {"B15", "a pyramid 1e7 m from the origin", far_away},
         {"C1", "a pendulum, and a conical one", pendulum},
         {"C2", "a double pendulum", double_pendulum},

@@ -16,6 +16,7 @@ std::vector<Result> slip_to_roll();
 std::vector<Result> roll_down();
 std::vector<Result> bouncing_ball();
 std::vector<Result> rod_strikes();
+std::vector<Result> simultaneous_impacts();
 std::vector<Result> far_away();
 std::vector<Result> pendulum();
 std::vector<Result> double_pendulum();
