@@ -8,10 +8,11 @@ namespace carom::detail {
 
 namespace {
 
-/// Compliance of the rows, in parts of their own: where rows say what others say as well, they share the impulse.
-/// That cannot be in a tree.
+/// Compliance of the rows, in parts of their own: where rows say what others say as well, they share the
+/// impulse. That cannot be in a tree.
 constexpr double compliance_in_tree = 1e-10, compliance_in_loops = 1e-6;
-constexpr int most_rounds = 6;         ///< in which limits, motors and friction find which of them hold
+constexpr int free_rounds = 3;         ///< in which limits, motors and friction find which of them hold
+constexpr int most_rounds = 12;        ///< with those in which they only let go
 constexpr int most_sweeps = 4;         ///< of refinement
 constexpr double small_speed = 1e-10;  ///< m/s and rad/s
 constexpr int most_turns = 4;          ///< in which directions and velocities agree
@@ -554,7 +555,7 @@ void DirectSolver<D>::solve_as_laid(const Group& group) {
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) set_effects(joints_[k]);
     assemble(group);
     for (int round = 0; round < most_rounds; ++round) {
-        const bool changed = find_laws(group);
+        const bool changed = find_laws(group, round >= free_rounds);
         if (round > 0 && !changed) break;
         for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) set_diagonal(k, true);
         each_row(group, [&](std::uint32_t, std::uint32_t row) { open_[row] = laws_[row].open ? 1 : 0; });

@@ -102,11 +102,10 @@ class DirectSolver {
     void assemble(const Group& group);
     void weigh(std::uint32_t node);
     double side_product(const Tie& tie, std::uint32_t row, std::uint32_t column) const;
-    bool find_laws(const Group& group);
-    bool find_drive_law(std::uint32_t node, int drive);
-    bool find_spring_law(std::uint32_t node, int part);
-    bool set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law);
-    bool is_stuck(std::uint32_t node) const;
+    bool find_laws(const Group& group, bool releasing);
+    bool find_drive_law(std::uint32_t node, int drive, bool releasing);
+    bool find_spring_law(std::uint32_t node, int part, bool releasing);
+    bool set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, bool releasing);
     void split_friction(std::uint32_t node);
     VectorRows look_at(std::uint32_t node, int part) const;
     void set_diagonal(std::uint32_t node, bool with_springs);

@@ -8,8 +8,9 @@
 namespace carom::detail {
 
 template <int D>
-bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law) {
+bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, bool releasing) {
     RowLaw& old = laws_[row];
+    if (releasing && law.is_firm() && !old.is_firm()) return false;
     const bool changed = old.open != law.open || old.softness != law.softness ||
                          old.speed_wanted != law.speed_wanted || old.given != law.given;
     old = law;
@@ -17,29 +18,31 @@ bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLa
     return changed;
 }
 
-/// Returns whether any row is to be solved otherwise than before.
+/// Returns whether any row is to be solved otherwise than before. While `releasing`, limits, motors and
+/// friction may let go but not take hold: that comes to an end.
 template <int D>
-bool DirectSolver<D>::find_laws(const Group& group) {
+bool DirectSolver<D>::find_laws(const Group& group, bool releasing) {
     bool changed = false;
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
         const DirectJoint<D>& joint = joints_[k];
         for (int part = 0; part < 2; ++part) {
-            if (joint.is_held(part) && find_spring_law(k, part)) changed = true;
+            if (joint.is_held(part) && find_spring_law(k, part, releasing)) changed = true;
         }
         for (int i = 0; i < joint.rows().drive_count; ++i) {
-            if (find_drive_law(k, i)) changed = true;
+            if (find_drive_law(k, i, releasing)) changed = true;
         }
     }
     return changed;
 }
 
 template <int D>
-bool DirectSolver<D>::find_drive_law(std::uint32_t node, int drive) {
+bool DirectSolver<D>::find_drive_law(std::uint32_t node, int drive, bool releasing) {
     const DirectJoint<D>& joint = joints_[node];
     const int r = joint.first_drive() + drive;
     const std::uint32_t row = joint.first_row + static_cast<std::uint32_t>(r);
     const DriveLaw law = drive_law(joint, drive, rows_[row].coordinate, step_);
-    return set_law(node, row, law.piece_at(speed(joint, rows_[row]), rows_[row].impulse, own(node, r, r)));
+    return set_law(node, row, law.piece_at(speed(joint, rows_[row]), rows_[row].impulse, own(node, r, r)),
+                   releasing);
 }
 
 template <int D>
@@ -74,7 +77,7 @@ void take(const Vec3& from, double& to) { to = from.x; }
 
 /// A spring, and in turns friction, of limited size.
 template <int D>
-bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part) {
+bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part, bool releasing) {
     DirectJoint<D>& joint = joints_[node];
     const VectorRows v = look_at(node, part);
     const SpringRow<float>& spring = joint.spring_of(part);
@@ -86,7 +89,8 @@ bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part) {
     bool sticks = false;
     Vec3 rub{};
     if (part == 1 && joint.friction > 0) {
-        const Vec3 wanted = rubbed - v.inverse * (v.speed + v.compliance * (next - old));
+        // What turns the other way tries first whether it sticks (see `DriveLaw::piece_at`).
+        const Vec3 wanted = rubbed - 0.01 * (v.inverse * (v.speed + v.compliance * (next - old)));
         rub = cut_to(wanted, joint.friction);
         sticks = dot(wanted, wanted) <= joint.friction * joint.friction;
         take(rub, joint.rubbed);
@@ -101,7 +105,7 @@ bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part) {
             law.given = is_elastic ? rub[i] : rub[i] + next[i];
         }
         const std::uint32_t row = joint.first_row + static_cast<std::uint32_t>(v.first + i);
-        if (set_law(node, row, law)) changed = true;
+        if (set_law(node, row, law, releasing)) changed = true;
     }
     return changed;
 }
@@ -119,8 +123,8 @@ void DirectSolver<D>::split_friction(std::uint32_t node) {
     take(v.impulse - cut_to(sprung, static_cast<double>(joint.angular_spring.most)), joint.rubbed);
 }
 
-#define CAROM_INSTANTIATE(D)                                \
-    template bool DirectSolver<D>::find_laws(const Group&); \
+#define CAROM_INSTANTIATE(D)                                      \
+    template bool DirectSolver<D>::find_laws(const Group&, bool); \
     template void DirectSolver<D>::split_friction(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

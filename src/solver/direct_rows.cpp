@@ -326,25 +326,35 @@ DriveLaw drive_law(const DirectJoint<D>& joint, int drive, double coordinate, co
     return law;
 }
 
-/// Where the law of spring and motor, which pushes with `motor`, meets the line along which the row alone
-/// answers to impulses.
-DriveLaw::Point DriveLaw::with_spring(double motor, double speed, double impulse, double compliance) const {
-    if (softness == 0) return {speed + compliance * (motor - impulse), {false, 0, 0, motor}};
+/// Where the law of spring and motor, which pushes with `motor`, meets the line along which the speed changes
+/// by `slope` for an impulse.
+DriveLaw::Point DriveLaw::with_spring(double motor, double speed, double impulse, double slope,
+                                      double compliance) const {
+    if (softness == 0) return {speed + slope * (motor - impulse), {false, 0, 0, motor}};
     const double soft = softness * compliance;
-    const double at = (speed + compliance * (spring_speed / soft + motor - impulse)) / (1 + 1 / softness);
+    const double at = (speed + slope * (spring_speed / soft + motor - impulse)) / (1 + slope / soft);
     const double force = (spring_speed - at) / soft;
     if (std::fabs(force) <= spring_most) return {at, {true, softness, spring_speed, motor}};
     const double given = motor + std::copysign(spring_most, force);
-    return {speed + compliance * (given - impulse), {false, 0, 0, given}};
+    return {speed + slope * (given - impulse), {false, 0, 0, given}};
 }
 
+/// Any slope finds the piece in the end. With a steep one a motor that has to let go or turn round tries
+/// first whether it holds; with a flat one a limit takes hold only where the speed itself leaves its range,
+/// and not where the impulse of another piece would throw a joint that stood alone.
 RowLaw DriveLaw::piece_at(double speed, double impulse, double compliance) const {
+    constexpr double steep = 100, flat = 1e-3;
     if (two_way) return {true, 0, 0, 0};
-    Point p = with_spring(motor_most, speed, impulse, compliance);
-    if (motor_most > 0 && p.speed > motor_speed) {
-        p = with_spring(-motor_most, speed, impulse, compliance);
-        if (p.speed < motor_speed) p = {motor_speed, {true, 0, motor_speed, 0}};
+    const auto meet = [&](double motor, double slope) {
+        return with_spring(motor, speed, impulse, slope * compliance, compliance);
+    };
+    double motor = motor_most;
+    bool sticks = false;
+    if (motor_most > 0 && meet(motor_most, steep).speed > motor_speed) {
+        motor = -motor_most;
+        sticks = meet(motor, steep).speed < motor_speed;
     }
+    const Point p = sticks ? Point{motor_speed, {true, 0, motor_speed, 0}} : meet(motor, flat);
     if (has_limits && p.speed < low) return {true, 0, low, 0};
     if (has_limits && p.speed > high) return {true, 0, high, 0};
     return p.law;

@@ -29,6 +29,8 @@ struct RowLaw {
         0;  ///< compliance, in parts of that of the row itself (of a spring in space: of its block)
     double speed_wanted = 0;
     double given = 0;
+
+    bool is_firm() const { return open && softness == 0; }
 };
 
 /// A coordinate that may be limited, driven and sprung, seen as one row: the speed it has after the sub-step
@@ -40,7 +42,7 @@ struct DriveLaw {
     double motor_speed = 0, motor_most = 0;
     double softness = 0, spring_speed = 0, spring_most = 0;  ///< no spring where the softness is zero
 
-    /// The piece of the law at which a row ends up that has this speed and impulse, if it stood alone.
+    /// The piece of the law that is to be tried next, for a row that has this speed and impulse now.
     RowLaw piece_at(double speed, double impulse, double compliance) const;
 
   private:
@@ -48,7 +50,7 @@ struct DriveLaw {
         double speed = 0;
         RowLaw law;
     };
-    Point with_spring(double motor, double speed, double impulse, double compliance) const;
+    Point with_spring(double motor, double speed, double impulse, double slope, double compliance) const;
 };
 
 /// A joint among those that are solved directly.

@@ -29,15 +29,25 @@ class JointGroups {
         friend bool operator==(const Tie&, const Tie&) = default;
     };
 
+    /// A body of a group, and what hangs on the joint by which it is reached, itself included.
+    struct Hanging {
+        std::uint32_t slot = 0;
+        double mass = 0, load = 0;
+        Hanging* from = nullptr;
+        bool reached = false;
+    };
+
     bool look(const JointInput<D>& input);
     void group(const JointInput<D>& input);
     std::uint32_t root(std::uint32_t tie);
-    bool is_hard(std::span<const std::uint32_t> ties, const JointInput<D>& input) const;
+    bool is_hard(std::span<const std::uint32_t> group);
+    double greatest_load(std::span<const std::uint32_t> group, bool some_still);
 
     JointMethod method_ = JointMethod::iterative;
     std::uint32_t first_movable_ = 0;
     std::vector<Tie> ties_, seen_;
     std::vector<std::uint32_t> parent_;  ///< by tie: of the forest of those that hang together
+    std::vector<Hanging> bodies_;
     std::vector<std::uint32_t> iterative_, direct_, starts_;
 };
 
