@@ -16,6 +16,14 @@ namespace carom {
 template <int D>
 using JointId = Id<D, struct JointTag>;
 
+/// How joints are solved. Either way they hold the same; what differs is how far a chain or frame of joints
+/// gives way, and what it costs.
+enum class JointMethod : std::uint8_t {
+    automatic,  ///< directly where chains are long or masses differ so much that sweeps would not hold them
+    direct,     ///< all joints that hang together at once, by a factorised system: nothing stretches
+    iterative,  ///< one after the other, again in every sub-step: the fastest for crowds of joints
+};
+
 /// What a coordinate of a joint may be: an angle (rad, beyond ±π where it winds) or a distance (m), zero at
 /// the start. `low` may equal `high`; either may be infinite.
 struct JointLimits {

@@ -44,6 +44,7 @@ struct WorldDefinition {
     int substeps = 4;  ///< 1 … 64 solver passes a step
     Integrator integrator = Integrator::semi_implicit_euler;
     Impacts impacts = Impacts::simultaneous;
+    JointMethod joints = JointMethod::automatic;
     bool sleep = true;                 ///< bodies at rest may fall asleep
     bool continuous = true;            ///< fast bodies do not pass through fixed ones
     double restitution_threshold = 1;  ///< m/s: slower impacts do not bounce; not negative

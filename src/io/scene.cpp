@@ -22,6 +22,10 @@ constexpr std::pair<std::string_view, Integrator> integrators[] = {
 constexpr std::pair<std::string_view, Impacts> impact_methods[] = {{"simultaneous", Impacts::simultaneous},
                                                                    {"sequential", Impacts::sequential}};
 
+constexpr std::pair<std::string_view, JointMethod> joint_methods[] = {{"automatic", JointMethod::automatic},
+                                                                      {"direct", JointMethod::direct},
+                                                                      {"iterative", JointMethod::iterative}};
+
 template <int D>
 void read_world(const Value& value, WorldDefinition<D>& world, double& step) {
     const auto length_of_step = [&](const Value& v) {
@@ -32,9 +36,11 @@ void read_world(const Value& value, WorldDefinition<D>& world, double& step) {
         read_choice<Integrator>(v, integrators, world.integrator);
     };
     const auto impacts = [&](const Value& v) { read_choice<Impacts>(v, impact_methods, world.impacts); };
+    const auto joints = [&](const Value& v) { read_choice<JointMethod>(v, joint_methods, world.joints); };
     read_object(
         value, {field("gravity", world.gravity), field("step", length_of_step),
                 field("substeps", world.substeps), field("integrator", integrator), field("impacts", impacts),
+                field("joints", joints),
                 field("sleep", world.sleep), field("continuous", world.continuous),
                 not_negative("restitution_threshold", world.restitution_threshold),
                 not_negative("hit_speed", world.hit_speed)});

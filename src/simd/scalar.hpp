@@ -41,6 +41,9 @@ CAROM_INLINE float load_lanes<float>(const float* lanes) {
 inline float maximum(float a, float b) { return a > b ? a : b; }
 inline float minimum(float a, float b) { return a < b ? a : b; }
 inline float square_root(float a) { return std::sqrt(a); }
+inline double maximum(double a, double b) { return a > b ? a : b; }
+inline double minimum(double a, double b) { return a < b ? a : b; }
+inline double square_root(double a) { return std::sqrt(a); }
 inline bool any(bool mask) { return mask; }
 inline bool both(bool a, bool b) { return a && b; }
 inline std::uint32_t bits_of(bool mask) { return mask; }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "carom/joints.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/joint.hpp"
 #include "solver/body_records.hpp"
@@ -23,6 +24,7 @@ struct JointInput {
     const BodySlots& slots;
     RecordView<D> bodies;
     double substep = 0;  ///< length, s
+    JointMethod method = JointMethod::automatic;
 
     std::uint32_t slot_of(std::uint32_t body) const {
         return body == no_body ? BodySlots::still : slots.slot(body);

@@ -178,9 +178,10 @@ class BoundMass {
 };
 
 /// The spring of a drive among the joint's rows.
-template <int D, Layout L>
+template <int D>
 double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveKind kind, const Vec<D>& axis,
                    std::span<const BodyState<D>> states, std::span<const BodyMass<D>> masses) {
+    const Layout& L = layouts<D>[joint.layout];
     BoundMass<D> mass(joint, states, masses);
     const Vec<D> arm_on_line = pose.arm_a + pose.gap;
     for (int i = 0; i < D; ++i) {
@@ -209,6 +210,8 @@ double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveK
     return 1;
 }
 
+}  // namespace
+
 /// With stiffness κ and damping γ a unit of mass, and g = κ h/4 + γ/2, the impulse −h m (κ C + g (s + s'))
 /// for the stretch C and the speeds s and s' at the start and the end comes out of a row with the mass m /
 /// share.
@@ -220,7 +223,11 @@ SpringRow<float> spring_row(SpringSettings& spring, double h, double share) {
             static_cast<float>(push / (1 + push)), static_cast<float>(std::min(spring.most * h, 1e37))};
 }
 
+namespace {
+
 float limited(double value) { return static_cast<float>(std::clamp(value, -1e18, 1e18)); }
+
+}  // namespace
 
 template <int D>
 Angular<D> turn_between(const JointPose<D>& pose) {
@@ -236,6 +243,32 @@ Angular<D> turn_between(const JointPose<D>& pose) {
         return (sine > 1e-9 ? 2 * atan2(sine, sign * q.w) / sine : 2.0) * v;
     }
 }
+
+template <int D>
+DriveBase<D, float> drive_row(DriveSettings& drive, const JointRecord<D>& joint, const JointPose<D>& pose,
+                              std::span<const BodyState<D>> states, std::span<const BodyMass<D>> masses,
+                              double h) {
+    const DriveKind kind = kind_of(drive.measure);
+    const Measured<D> now = measure(drive, pose);
+    DriveBase<D, float> row;
+    drive.coordinate = now.value;
+    row.axis = narrow<float>(now.axis);
+    // After many turns an angle is too large for a float; what is left to the limits is not.
+    const double start = kind == DriveKind::turn ? now.value : 0;
+    row.low = limited(drive.low - start);
+    row.high = limited(drive.high - start);
+    if (drive.spring.frequency != 0) {
+        const double share = bound_share<D>(joint, pose, kind, now.axis, states, masses);
+        row.spring = spring_row(drive.spring, h, share);
+        row.rest = static_cast<float>(drive.spring.rest - start);
+    }
+    row.before = static_cast<float>(now.speed);
+    row.motor_speed = static_cast<float>(drive.motor_speed);
+    row.motor_most = static_cast<float>(std::min(drive.motor_most * h, 1e37));
+    return row;
+}
+
+namespace {
 
 template <int D, Layout L>
 struct Load {
@@ -256,7 +289,7 @@ struct Load {
         set_angular(rows, joint, pose, h);
         if constexpr (L.drive_count > 0) {
             for (int i = 0; i < L.drive_count; ++i)
-                set_drive(rows.drives[i], joint.drives[i], joint, pose, states, masses, h);
+                rows.drives[i] = drive_row<D>(joint.drives[i], joint, pose, states, masses, h);
         }
         std::array<float, fields> all;
         std::memcpy(all.data(), &rows, sizeof rows);
@@ -298,27 +331,6 @@ struct Load {
             rows.angular.friction = static_cast<float>(std::min(joint.held.friction * h, 1e37));
             rows.angular.before = narrow<float>(Angular<D>(pose.spin_b - pose.spin_a));
         }
-    }
-
-    static void set_drive(DriveBase<D, float>& row, DriveSettings& drive, const JointRecord<D>& joint,
-                          const JointPose<D>& pose, std::span<const BodyState<D>> states,
-                          std::span<const BodyMass<D>> masses, double h) {
-        const DriveKind kind = kind_of(drive.measure);
-        const Measured<D> now = measure(drive, pose);
-        drive.coordinate = now.value;
-        row.axis = narrow<float>(now.axis);
-        // After many turns an angle is too large for a float; what is left to the limits is not.
-        const double start = kind == DriveKind::turn ? now.value : 0;
-        row.low = limited(drive.low - start);
-        row.high = limited(drive.high - start);
-        if (drive.spring.frequency != 0) {
-            const double share = bound_share<D, L>(joint, pose, kind, now.axis, states, masses);
-            row.spring = spring_row(drive.spring, h, share);
-            row.rest = static_cast<float>(drive.spring.rest - start);
-        }
-        row.before = static_cast<float>(now.speed);
-        row.motor_speed = static_cast<float>(drive.motor_speed);
-        row.motor_most = static_cast<float>(std::min(drive.motor_most * h, 1e37));
     }
 };
 
@@ -365,11 +377,15 @@ JointErrors errors(const JointRecord<D>& joint, const JointPose<D>& pose) {
     return e;
 }
 
-#define CAROM_INSTANTIATE(D)                                                            \
-    template JointPose<D> pose_of(const JointRecord<D>&, std::span<const BodyState<D>>, \
-                                  std::span<const BodyMass<D>>, bool);                  \
-    template Measured<D> measure(const DriveSettings&, const JointPose<D>&);            \
-    template JointErrors errors(const JointRecord<D>&, const JointPose<D>&);            \
+#define CAROM_INSTANTIATE(D)                                                                            \
+    template JointPose<D> pose_of(const JointRecord<D>&, std::span<const BodyState<D>>,                 \
+                                  std::span<const BodyMass<D>>, bool);                                  \
+    template Measured<D> measure(const DriveSettings&, const JointPose<D>&);                            \
+    template JointErrors errors(const JointRecord<D>&, const JointPose<D>&);                            \
+    template Angular<D> turn_between<D>(const JointPose<D>&);                                           \
+    template DriveBase<D, float> drive_row(DriveSettings&, const JointRecord<D>&, const JointPose<D>&,  \
+                                           std::span<const BodyState<D>>, std::span<const BodyMass<D>>, \
+                                           double);                                                     \
     template const std::array<JointLoader<D>, layouts<D>.size()>& joint_loaders<D>();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -59,6 +59,17 @@ JointErrors errors(const JointRecord<D>& joint, const JointPose<D>& pose);
 /// Brings `stiffness` and `damping` of the spring to this length of a sub-step.
 void prepare_spring(SpringSettings& spring, double h);
 
+/// The spring as a row of a joint, which its other rows make heavier by `share`.
+SpringRow<float> spring_row(SpringSettings& spring, double h, double share);
+/// A drive as it is at the start of the step; `drive.coordinate` is measured.
+template <int D>
+DriveBase<D, float> drive_row(DriveSettings& drive, const JointRecord<D>& joint, const JointPose<D>& pose,
+                              std::span<const BodyState<D>> states, std::span<const BodyMass<D>> masses,
+                              double h);
+/// By how much frame b is turned against frame a, as a rotation vector.
+template <int D>
+Angular<D> turn_between(const JointPose<D>& pose);
+
 /// The rows of a joint as floats: `fields` of them, of which the first are kept from step to step.
 template <int D>
 struct JointLoader {

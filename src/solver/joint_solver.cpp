@@ -4,20 +4,37 @@
 #include <bit>
 
 #include "simd/width.hpp"
+#include "solver/direct.hpp"
+#include "solver/joint_groups.hpp"
 #include "solver/joint_load.hpp"
 
 namespace carom::detail {
+
+template <int D>
+JointSolver<D>::JointSolver()
+    : groups_(std::make_unique<JointGroups<D>>()), direct_(std::make_unique<DirectSolver<D>>()) {}
+template <int D>
+JointSolver<D>::~JointSolver() = default;
+
+template <int D>
+bool JointSolver<D>::is_small() const {
+    return joint_.size() + 4 * direct_->size() < 256;
+}
 
 template <int D>
 void JointSolver<D>::plan(const JointInput<D>& input) {
     batches_.clear();
     joint_.clear();
     couplings_.plan(input);
-    if (input.active.empty()) return;
+    if (groups_->plan(input)) direct_->plan(input, groups_->direct(), groups_->starts());
+    direct_->set_step(input.substep);
+    if (groups_->iterative().empty()) return;
+    JointInput<D> rest = input;
+    rest.active = groups_->iterative();
     step_ = joint_step(input.substep);
     wide_ = &joint_programs<D>(lane_width());
-    colour(input);
-    make_batches(input);
+    colour(rest);
+    make_batches(rest);
 }
 
 template <int D>
@@ -38,12 +55,16 @@ void JointSolver<D>::each_share(const Crew& crew, bool writes_bodies, Visit&& vi
 template <int D>
 void JointSolver<D>::prepare(const JointInput<D>& input, const Crew& crew) {
     each_share(crew, false, [&](const Batch& batch, const Part& part) { fill(input, batch, part); });
+    direct_->load(input, crew);
     // Bodies are loaded, and rows that others filled are read.
     crew.meet();
     crew.alone([&] { couplings_.prepare(input); });
     each_share(crew, true, [&](const Batch& batch, const Part& part) {
         program(batch).start(span(batch, part), input.bodies);
     });
+    if (!direct_->any()) return;
+    direct_->start(input.bodies, crew);
+    crew.meet();
 }
 
 /// Greedy colouring in the order of the joints: the first colour that neither body has yet.
@@ -137,6 +158,9 @@ void JointSolver<D>::solve(const RecordView<D>& bodies, const Crew& crew) {
     each_share(crew, true, [&](const Batch& batch, const Part& part) {
         program(batch).solve(span(batch, part), bodies, step_);
     });
+    if (!direct_->any()) return;
+    direct_->solve(bodies, crew);
+    crew.meet();
 }
 
 template <int D>
@@ -145,11 +169,15 @@ void JointSolver<D>::relax(const RecordView<D>& bodies, const Crew& crew) {
     each_share(crew, true, [&](const Batch& batch, const Part& part) {
         program(batch).relax(span(batch, part), bodies, step_);
     });
+    if (!direct_->any()) return;
+    direct_->relax(bodies, crew);
+    crew.meet();
 }
 
 template <int D>
 void JointSolver<D>::store(const JointInput<D>& input, const Crew& crew) const {
     if (crew.is_first()) couplings_.store(input);
+    direct_->store(input, crew);
     each_share(crew, false, [&](const Batch& batch, const Part& part) {
         const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
         const std::size_t width = batch.width;

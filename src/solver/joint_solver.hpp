@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,15 +13,23 @@
 
 namespace carom::detail {
 
+template <int D>
+class DirectSolver;
+template <int D>
+class JointGroups;
+
 /// Joints in the sub-steps of the solver. Those of one colour share no body that can be pushed, and those of
 /// one colour and layout lie in blocks of as many lanes as the processor has.
 template <int D>
 class JointSolver {
   public:
+    JointSolver();
+    ~JointSolver();
+
     /// Takes the joints up: colours them and makes room for their rows.
     void plan(const JointInput<D>& input);
     /// So few that they are not worth several workers.
-    bool is_small() const { return joint_.size() < 256; }
+    bool is_small() const;
 
     // What each worker does; all have to have met before, and have met after it.
 
@@ -70,6 +79,8 @@ class JointSolver {
     std::vector<std::uint8_t> some_fixed_;      ///< by block
     std::vector<Line> lines_;
     Couplings<D> couplings_;
+    std::unique_ptr<JointGroups<D>> groups_;
+    std::unique_ptr<DirectSolver<D>> direct_;
 };
 
 }  // namespace carom::detail

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carom/body.hpp"
+#include "carom/joints.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/contact.hpp"
 #include "solver/blocks.hpp"
@@ -32,7 +33,8 @@ struct SolverInput {
     double step = 0;
     int substeps = 4;
     double restitution_threshold = 1;
-    bool impacts_together = true;                    ///< else one after the other, at the end of the step
+    bool impacts_together = true;  ///< else one after the other, at the end of the step
+    JointMethod joint_method = JointMethod::automatic;
     std::span<JointRecord<D>> joints{};              ///< all; impulses are read and written
     std::span<const std::uint32_t> active_joints{};  ///< indices of those that hold a body which moves freely
     std::span<CouplingRecord<D>> couplings{};        ///< the same for these
@@ -211,7 +213,8 @@ class Solver {
                 input.masses,
                 slots_,
                 view_,
-                input.step / input.substeps};
+                input.step / input.substeps,
+                input.joint_method};
     }
     void store_bodies(const SolverInput<D>& input, const Crew& crew) const;
 

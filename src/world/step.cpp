@@ -169,8 +169,8 @@ template <int D>
 void WorldState<D>::solve_constraints(double dt) {
     list_active_joints();
     solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
-                definition.restitution_threshold, definition.impacts == Impacts::simultaneous, joints,
-                active_joints, couplings, active_couplings});
+                definition.restitution_threshold, definition.impacts == Impacts::simultaneous,
+                definition.joints, joints, active_joints, couplings, active_couplings});
 }
 
 template <int D>

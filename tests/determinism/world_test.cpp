@@ -193,6 +193,7 @@ TYPED_TEST(Determinism, TheHashTellsWorldsApart) {
     const std::vector<std::pair<const char*, std::function<void(WorldDefinition<D>&)>>> settings{
         {"substeps", [](auto& w) { w.substeps = 5; }},
         {"integrator", [](auto& w) { w.integrator = Integrator::verlet; }},
+        {"joints", [](auto& w) { w.joints = JointMethod::direct; }},
         {"sleep", [](auto& w) { w.sleep = false; }},
         {"threshold", [](auto& w) { w.restitution_threshold = 0.5; }},
     };
