@@ -20,6 +20,7 @@ std::span<const Case> validation_cases() {
         {"C2", "a double pendulum", double_pendulum},
         {"C3", "a chain of ten rods, let go from the horizontal", falling_chain},
         {"C5", "simple machines: pulley, gear, spring, lever", simple_machines},
+        {"D4", "bodies that float: draft, bobbing, the way up", floating_bodies},
     };
     return cases;
 }

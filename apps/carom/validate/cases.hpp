@@ -21,5 +21,6 @@ std::vector<Result> pendulum();
 std::vector<Result> double_pendulum();
 std::vector<Result> falling_chain();
 std::vector<Result> simple_machines();
+std::vector<Result> floating_bodies();
 
 }  // namespace carom::app
