@@ -12,6 +12,8 @@
 #include "carom/inertia.hpp"
 #include "carom/joints.hpp"
 #include "carom/mass.hpp"
+#include "carom/parts/explosion.hpp"
+#include "carom/parts/rope.hpp"
 #include "carom/profile.hpp"
 #include "carom/queries.hpp"
 #include "carom/rotation.hpp"
