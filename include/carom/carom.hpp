@@ -12,6 +12,7 @@
 #include "carom/inertia.hpp"
 #include "carom/joints.hpp"
 #include "carom/mass.hpp"
+#include "carom/parts/car.hpp"
 #include "carom/parts/character.hpp"
 #include "carom/parts/explosion.hpp"
 #include "carom/parts/ragdoll.hpp"
