@@ -15,6 +15,7 @@
 #include "carom/parts/car.hpp"
 #include "carom/parts/character.hpp"
 #include "carom/parts/explosion.hpp"
+#include "carom/parts/masonry.hpp"
 #include "carom/parts/ragdoll.hpp"
 #include "carom/parts/rope.hpp"
 #include "carom/profile.hpp"

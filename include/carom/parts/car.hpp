@@ -86,6 +86,7 @@ class Car {
     /// Removes its bodies, and with them the joints.
     void remove(World<D>& world);
 
+    /// Its parts; wheels and joints in the order of the definition.
     BodyId<D> chassis() const { return chassis_; }
     std::span<const BodyId<D>> wheels() const { return wheels_; }
     std::span<const JointId<D>> joints() const { return joints_; }

@@ -48,6 +48,7 @@ class Character {
     /// Puts its lowest point elsewhere at once, at rest.
     void place(World<D>& world, const Vec<D>& position);
 
+    /// The kinematic body that it is in the world.
     BodyId<D> body() const { return body_; }
     /// Its lowest point, m.
     Vec<D> position(const World<D>& world) const;
