@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 
-layers = ["core", "math", "simd", "geometry", "collision", "dynamics", "solver", "joints", "world", "io"]
+layers = ["core", "math", "simd", "geometry", "collision", "dynamics", "solver", "joints", "world", "parts", "io"]
 engine_layers = layers[:-1]
 
 

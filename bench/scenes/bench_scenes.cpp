@@ -24,6 +24,7 @@ std::span<const BenchScene> bench_scenes() {
         {"large_world_3", 500, large_world},
         {"wide_pyramid_3", 500, wide_pyramid},
         {"pyramid_3", 500, pyramid, true},
+        {"ragdolls_3", 300, ragdoll_pile, true},
     };
     return scenes;
 }

@@ -23,6 +23,7 @@ BenchWorld<3> convex_vs_mesh();
 BenchWorld<3> large_world();
 BenchWorld<3> wide_pyramid();
 BenchWorld<3> pyramid();
+BenchWorld<3> ragdoll_pile();
 
 /// The settings that most scenes have in common.
 template <int D>

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "carom/parts/ragdoll.hpp"
+
 namespace carom::bench {
 namespace {
 
@@ -9,7 +11,7 @@ constexpr double degree = 3.14159265358979323846 / 180;
 
 /// A bone, where it is in a human that stands at the origin, and its joint with its parent. Joints are given
 /// by a frame on either bone: hinges turn about the z axis, ball joints have it in the middle of their cone.
-struct Bone {
+struct BoneOfTable {
     int parent;
     Vec3 position;
     Rotation3 rotation;
@@ -25,7 +27,7 @@ struct Bone {
     double friction;
 };
 
-const Bone bones[] = {
+const BoneOfTable bones[] = {
     // clang-format off
     // pelvis
     {-1, {0, 0.932087, -0.051708}, {0.739169, 0, 0, 0.67352}, {0.07, 0, -0.08},
@@ -91,18 +93,17 @@ double twist_of(const Rotation3& a, const Rotation3& b) {
     return std::remainder(2 * std::atan2(q.z, q.w), 360 * degree);
 }
 
-void add_joint(World3& world, const Bone& bone, BodyId3 a, BodyId3 b) {
-    const Transform3 placed_a = world.transform(a);
-    const Rotation3 frame_a = placed_a.rotation * normalized(bone.frame_a);
-    const Rotation3 frame_b = world.rotation(b) * normalized(bone.frame_b);
+Transform3 placed(const BoneOfTable& bone) { return {bone.position, normalized(bone.rotation)}; }
+
+decltype(JointDefinition3::kind) joint_of(const BoneOfTable& bone) {
+    const Transform3 parent = placed(bones[bone.parent]);
+    const Rotation3 frame_a = parent.rotation * normalized(bone.frame_a);
+    const Rotation3 frame_b = placed(bone).rotation * normalized(bone.frame_b);
     const Vec3 axis_a = rotate(frame_a, Vec3{0, 0, 1}), axis_b = rotate(frame_b, Vec3{0, 0, 1});
     const double start = twist_of(frame_a, frame_b);
     const JointLimits twist{bone.least_twist * degree - start, bone.most_twist * degree - start};
     const JointSpring spring{.frequency = 1, .damping_ratio = 0.7};
-    JointDefinition3 joint;
-    joint.a = a;
-    joint.b = b;
-    const Vec3 anchor = apply(placed_a, bone.anchor_a);
+    const Vec3 anchor = apply(parent, bone.anchor_a);
     if (bone.is_hinge) {
         HingeJoint<3> hinge{.anchor = anchor,
                             .axis = axis_a,
@@ -110,39 +111,43 @@ void add_joint(World3& world, const Bone& bone, BodyId3 a, BodyId3 b) {
                             .motor = JointMotor{.speed = 0, .max = 5 * bone.friction},
                             .spring = spring};
         hinge.spring->rest = -start;
-        joint.kind = hinge;
-    } else {
-        joint.kind = BallJoint<3>{.anchor = anchor,
-                                  .axis = axis_b,
-                                  .cone_axis = axis_a,
-                                  .swing_limit = bone.swing * degree,
-                                  .twist_limits = twist,
-                                  .spring = spring,
-                                  .friction = 5 * bone.friction};
+        return hinge;
     }
-    world.add_joint(joint);
+    return BallJoint<3>{.anchor = anchor,
+                        .axis = axis_b,
+                        .cone_axis = axis_a,
+                        .swing_limit = bone.swing * degree,
+                        .twist_limits = twist,
+                        .spring = spring,
+                        .friction = 5 * bone.friction};
+}
+
+RagdollDefinition<3> make_human(int group) {
+    RagdollDefinition<3> human;
+    for (const BoneOfTable& of_table : bones) {
+        Bone<3>& bone = human.bones.emplace_back();
+        bone.parent = of_table.parent;
+        bone.body.position = of_table.position;
+        bone.body.rotation = normalized(of_table.rotation);
+        ShapeDefinition<3>& shape = bone.body.shapes.emplace_back();
+        shape.geometry = Capsule<3>{of_table.from, of_table.to, of_table.radius};
+        shape.material.friction = 0.6;
+        shape.material.rolling_resistance = 0.2;
+        if (of_table.in_group) shape.filter.group = group;
+        if (bone.parent >= 0) bone.joint = joint_of(of_table);
+    }
+    constexpr int left_thigh = 6, right_thigh = 8;
+    human.apart = {{left_thigh, right_thigh}};
+    return human;
 }
 
 }  // namespace
 
 std::vector<BodyId3> add_human(World3& world, const Vec3& position, int group) {
-    std::vector<BodyId3> bodies;
-    for (const Bone& bone : bones) {
-        BodyDefinition3 body;
-        body.position = position + bone.position;
-        body.rotation = normalized(bone.rotation);
-        ShapeDefinition<3>& shape = body.shapes.emplace_back();
-        shape.geometry = Capsule<3>{bone.from, bone.to, bone.radius};
-        shape.material.friction = 0.6;
-        shape.material.rolling_resistance = 0.2;
-        if (bone.in_group) shape.filter.group = -group;
-        bodies.push_back(world.add_body(body));
-        if (bone.parent >= 0)
-            add_joint(world, bone, bodies[static_cast<std::size_t>(bone.parent)], bodies.back());
-    }
-    constexpr std::size_t left_thigh = 6, right_thigh = 8;
-    world.set_collision(bodies[left_thigh], bodies[right_thigh], false);
-    return bodies;
+    static const RagdollDefinition<3> human = make_human(-1), without_group = make_human(0);
+    return add_ragdoll<3>(world, group != 0 ? human : without_group,
+                          {.placed = {position, {}}, .group = -group})
+        .bodies;
 }
 
 namespace {
@@ -178,39 +183,41 @@ ShapeDefinition<2> foot() {
     return shape;
 }
 
+RagdollDefinition<2> make_flat_human() {
+    constexpr double pi = 180 * degree;
+    RagdollDefinition<2> human;
+    for (const FlatBone& of_table : flat_bones) {
+        Bone<2>& bone = human.bones.emplace_back();
+        bone.parent = of_table.parent;
+        bone.body.position = {0, of_table.y};
+        bone.body.linear_damping = of_table.damping;
+        ShapeDefinition<2>& shape = bone.body.shapes.emplace_back();
+        shape.geometry = Capsule<2>{{0, of_table.low}, {0, of_table.high}, of_table.radius};
+        shape.material.friction = 0.2;
+        shape.filter.mask = 3;
+        if (of_table.radius == 0.045) bone.body.shapes.push_back(foot());
+        for (ShapeDefinition<2>& part : bone.body.shapes) {
+            part.material.density = 1;
+            part.filter.category = 2;
+            part.filter.group = -1;
+        }
+        if (bone.parent < 0) continue;
+        // Angles count from the frame on the parent.
+        const double zero = of_table.turned * pi;
+        bone.joint =
+            HingeJoint<2>{.anchor = {0, of_table.pivot},
+                          .limits = JointLimits{of_table.least * pi + zero, of_table.most * pi + zero},
+                          .motor = JointMotor{.speed = 0, .max = 0.05 * of_table.friction},
+                          .spring = JointSpring{.frequency = 5, .damping_ratio = 0.5, .rest = zero}};
+    }
+    return human;
+}
+
 }  // namespace
 
 std::vector<BodyId2> add_human(World2& world, const Vec2& position, int group) {
-    constexpr double pi = 180 * degree;
-    std::vector<BodyId2> bodies;
-    for (const FlatBone& bone : flat_bones) {
-        BodyDefinition2 body;
-        body.position = position + Vec2{0, bone.y};
-        body.linear_damping = bone.damping;
-        ShapeDefinition<2>& shape = body.shapes.emplace_back();
-        shape.geometry = Capsule<2>{{0, bone.low}, {0, bone.high}, bone.radius};
-        shape.material.friction = 0.2;
-        shape.filter.mask = 3;
-        if (bone.radius == 0.045) body.shapes.push_back(foot());
-        for (ShapeDefinition<2>& part : body.shapes) {
-            part.material.density = 1;
-            part.filter.category = 2;
-            part.filter.group = -group;
-        }
-        bodies.push_back(world.add_body(body));
-        if (bone.parent < 0) continue;
-        JointDefinition2 joint;
-        joint.a = bodies[static_cast<std::size_t>(bone.parent)];
-        joint.b = bodies.back();
-        // Angles count from the frame on the parent.
-        const double zero = bone.turned * pi;
-        joint.kind = HingeJoint<2>{.anchor = position + Vec2{0, bone.pivot},
-                                   .limits = JointLimits{bone.least * pi + zero, bone.most * pi + zero},
-                                   .motor = JointMotor{.speed = 0, .max = 0.05 * bone.friction},
-                                   .spring = JointSpring{.frequency = 5, .damping_ratio = 0.5, .rest = zero}};
-        world.add_joint(joint);
-    }
-    return bodies;
+    static const RagdollDefinition<2> human = make_flat_human();
+    return add_ragdoll<2>(world, human, {.placed = {position, {}}, .group = -group}).bodies;
 }
 
 }  // namespace carom::bench

@@ -71,11 +71,34 @@ struct Spring {
     std::optional<double> length{};  ///< rest length, m; the distance at the start when left out
 };
 
+/// Water, or another fluid at rest or in steady flow, in the half-space up · x ≤ surface. On every dynamic
+/// body acts the weight of what its shapes displace, in the middle of that: density · V · g, with V the
+/// volume below the surface (where shapes of a body overlap it counts twice, as mass does) and g the
+/// component of the world's gravity against `up`. Drag acts in the middle of the wetted part, against the
+/// velocity u that it has in the water: F = −K u, K = linear_drag · density · V + ½ · quadratic_drag ·
+/// density · A · s, with A the wetted share of the cross-section of a ball of the same measure as the body's
+/// shapes, and s the mean speed of the body in the water, turning included; turning is slowed at the same
+/// rate, by the torque −K (I/m) ω. Drag never does more within a step than stop. Bodies that float may fall
+/// asleep.
+template <int D>
+struct Buoyancy {
+    Vec<D> up = [] {
+        Vec<D> y{};
+        y.y = 1;
+        return y;
+    }();                        ///< out of the water; any length but zero
+    double surface = 0;         ///< m, along the unit vector of `up`
+    double density = 1000;      ///< kg/m³ (kg/m² in the plane), not negative
+    double linear_drag = 0;     ///< 1/s, not negative: at which what has the density of the water slows down
+    double quadratic_drag = 0;  ///< a drag coefficient, not negative; about 0.5 for a ball, 1 for a cube
+    Vec<D> flow{};              ///< velocity of the water, m/s
+};
+
 /// One generator of forces, and when it acts.
 template <int D>
 struct ForceDefinition {
     std::variant<ConstantForce<D>, ConstantTorque<D>, TimedImpulse<D>, Drag<D>, Wind<D>, PointGravity<D>,
-                 Spring<D>>
+                 Spring<D>, Buoyancy<D>>
         kind{};
     double from = 0;                                      ///< s of world time
     double to = std::numeric_limits<double>::infinity();  ///< s of world time

@@ -89,8 +89,8 @@ struct Counts {
     int contacts = 0;  ///< pairs of shapes that touch or are about to
 };
 
-/// Kinetic energy, and potential energy in the world's uniform gravity, in point gravities and in springs; J.
-/// The zero of height is the origin.
+/// Kinetic energy, and potential energy in the world's uniform gravity, in point gravities, in springs and in
+/// water; J. The zero of height is the origin, and of depth the surface of the water.
 struct Energy {
     double kinetic = 0;
     double potential = 0;

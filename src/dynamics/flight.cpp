@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "dynamics/buoyancy.hpp"
 #include "math/trig.hpp"
 
 namespace carom::detail {
@@ -22,13 +23,16 @@ Decay::Decay(double damping, double step) {
 }
 
 template <int D>
-void LoadModel<D>::sum(const BodyView<D>& view, double time, std::span<Load<D>> loads) const {
+void LoadModel<D>::sum(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step) const {
     for (const std::uint32_t i : bodies) {
         const BodyMass<D>& m = view.masses[i];
         loads[i] = applied[i];
         loads[i].force += (m.mass * m.gravity_scale) * gravity;
     }
     forces.add_loads(view, bodies, time, loads);
+    const std::vector<Buoyancy<D>> waters = forces.waters(time);
+    if (!waters.empty())
+        add_buoyancy<D>({view.states, view.masses, solids, gravity, waters}, bodies, step, loads);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "carom/world.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/forces.hpp"
+#include "dynamics/solids.hpp"
 
 namespace carom::detail {
 
@@ -16,9 +17,11 @@ struct LoadModel {
     std::span<const Load<D>> applied;       ///< by body index
     std::span<const std::uint32_t> bodies;  ///< those that matter in this step
     const Forces<D>& forces;
+    Solids<D> solids{};  ///< needed where there is water
 
-    /// Writes force and torque on the bodies at `time` into `loads`, by body index.
-    void sum(const BodyView<D>& view, double time, std::span<Load<D>> loads) const;
+    /// Writes force and torque on the bodies at `time` into `loads`, by body index; those of water as they
+    /// shall act through a step of the length given, or at this moment (see `add_buoyancy`).
+    void sum(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step = 0) const;
 };
 
 /// The bodies that nothing constrains in this step, and what moves them.

@@ -38,6 +38,7 @@ struct Act {
         if (dynamic(bodies.masses[t.body.index])) loads[t.body.index].torque += t.value;
     }
     void operator()(const TimedImpulse<D>&) const {}
+    void operator()(const Buoyancy<D>&) const {}
     void operator()(const Drag<D>& d) const {
         if (d.body) return drag(d, d.body->index);
         for (const std::uint32_t i : listed) drag(d, i);
@@ -142,6 +143,16 @@ void Forces<D>::add_loads(const BodyView<D>& bodies, std::span<const std::uint32
     for (const Generator& g : generators_) {
         if (active(g, time)) std::visit(Act<D>{bodies, listed, loads}, g.definition.kind);
     }
+}
+
+template <int D>
+std::vector<Buoyancy<D>> Forces<D>::waters(double time) const {
+    std::vector<Buoyancy<D>> result;
+    for (const Generator& g : generators_) {
+        if (!active(g, time)) continue;
+        if (const auto* water = std::get_if<Buoyancy<D>>(&g.definition.kind)) result.push_back(*water);
+    }
+    return result;
 }
 
 template <int D>

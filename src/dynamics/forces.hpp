@@ -34,7 +34,11 @@ class Forces {
     void add_loads(const BodyView<D>& bodies, std::span<const std::uint32_t> listed, double time,
                    std::span<Load<D>> loads) const;
 
-    /// Marks (by body index) the listed bodies whose load depends on where they are or how they move.
+    /// What bodies float in at `time`; add_loads leaves that out.
+    std::vector<Buoyancy<D>> waters(double time) const;
+
+    /// Marks (by body index) the listed bodies whose load depends on where they are or how they move,
+    /// waters aside.
     void mark_fields(double time, std::span<const std::uint32_t> listed,
                      std::span<std::uint8_t> varies) const;
 
@@ -75,7 +79,7 @@ class Forces {
         }
     }
 
-    /// Energy stored in springs and point gravities, J.
+    /// Energy stored in springs and point gravities, J. That of bodies in water is `energy_in_water`.
     double potential(const BodyView<D>& bodies, double time) const;
 
     /// Sums of time steps are rounded; a border that is met to this many seconds counts as met.

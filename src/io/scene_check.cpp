@@ -172,12 +172,23 @@ class Checker {
             using Force = std::decay_t<decltype(force)>;
             if constexpr (std::is_same_v<Force, Spring<D>>)
                 check_spring(place, force);
+            else if constexpr (std::is_same_v<Force, Buoyancy<D>>)
+                check_water(place, force);
             else if constexpr (std::is_same_v<Force, Drag<D>>) {
                 if (force.body) check_pushed(force.body->index, "body");
             } else if constexpr (requires { force.body; })
                 check_pushed(force.body.index, "body");
         };
         std::visit(visit, data_.forces[i].kind);
+    }
+
+    void check_water(const std::string& place, const Buoyancy<D>& water) {
+        const Vec<D>& gravity = data_.world.gravity;
+        if (length(gravity) == 0) return add(place, "has no effect without gravity");
+        if (dot(normalized(water.up), normalized(gravity)) > -0.9)
+            add(place + ".surface", "is far from level: gravity does not pull the water against its normal");
+        if (D == 3 && (water.density < least_density || water.density > most_density))
+            add(place + ".density", fmt::format("{:g} kg/m³ is that of no liquid", water.density));
     }
 
     /// A spring is evaluated once a step, which is stable while its angular frequency times the step is below

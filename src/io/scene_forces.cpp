@@ -93,6 +93,29 @@ Fields spring_fields(const BodyNames<D>& body, ForceDefinition<D>& definition) {
             field("length", length)};
 }
 
+/// A surface is a height, or a plane; drag is linear, or both kinds.
+template <int D>
+Fields buoyancy_fields(const BodyNames<D>&, ForceDefinition<D>& definition) {
+    auto& water = make<Buoyancy<D>>(definition);
+    const auto normal = [&water](const Value& value) {
+        read(value, water.up);
+        if (water.up == Vec<D>{}) value.refuse("has no length");
+    };
+    const auto surface = [&water, normal](const Value& value) {
+        if (value.json().is_object())
+            return read_object(value, {required("normal", normal), required("offset", water.surface)});
+        read(value, water.surface);
+    };
+    const auto drag = [&water](const Value& value) {
+        if (value.json().is_object())
+            return read_object(value, {not_negative("linear", water.linear_drag),
+                                       not_negative("quadratic", water.quadratic_drag)});
+        not_negative("drag", water.linear_drag).read(value);
+    };
+    return {required("surface", surface), not_negative("density", water.density), field("drag", drag),
+            field("flow", water.flow)};
+}
+
 /// A type of force: its name, and a function that makes it and says how its fields are read.
 template <int D>
 struct ForceType {
@@ -101,20 +124,19 @@ struct ForceType {
 };
 
 template <int D>
-constexpr std::array<ForceType<D>, 7> force_types = {{{"force", force_fields<D>},
+constexpr std::array<ForceType<D>, 8> force_types = {{{"force", force_fields<D>},
                                                       {"torque", torque_fields<D>},
                                                       {"impulse", impulse_fields<D>},
                                                       {"drag", drag_fields<D>},
                                                       {"wind", wind_fields<D>},
                                                       {"point_gravity", point_gravity_fields<D>},
-                                                      {"spring", spring_fields<D>}}};
+                                                      {"spring", spring_fields<D>},
+                                                      {"buoyancy", buoyancy_fields<D>}}};
 
 template <int D>
 const ForceType<D>& read_type(const Value& value) {
     std::vector<std::string_view> names;
     for (const auto& type : force_types<D>) names.push_back(type.name);
-    if (value.json() == "buoyancy")
-        value.refuse(fmt::format("is not supported by this version; allowed are {}", listed(names)));
     return force_types<D>[read_choice(value, names)];
 }
 

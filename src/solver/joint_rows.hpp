@@ -170,6 +170,19 @@ struct TurnSeries {
                            z * (F(1.0f / 40320) - z * (F(1.0f / 3628800) - z * F(1.0f / 479001600)))))) {}
 };
 
+/// The same turn with whole turns left out, which a spin of more than 190 rad/s brings within a step of 60
+/// Hz: what is beyond half a turn the series would make arms of any length of.
+template <int D, class F>
+CAROM_INLINE Angular<D, F> without_whole_turns(const Angular<D, F>& angle) {
+    constexpr float half = 3.14159265f, whole = 2 * half;
+    const F squared = angular_dot(angle, angle);
+    const auto beyond = squared > F(half * half);
+    const F size = square_root(select(beyond, squared, F(1)));
+    const F magic(12582912.0f);  // 1.5 · 2²³: what is added to it is rounded to a whole number
+    const F turns = (size * F(1 / whole) + magic) - magic;
+    return angle * select(beyond, F(1) - F(whole) * turns / size, F(1));
+}
+
 /// What a body has turned by since the step began, and turns on by.
 template <int D, class F>
 struct Turning {
@@ -181,7 +194,7 @@ struct Turning {
     /// 0.14 rad on. With impulses and velocities along the same directions, a pass takes energy away whatever
     /// happens.
     CAROM_INLINE Turning(const Motion<D, F>& m, F h)
-        : angle(m.turned), spin(m.w), series(angular_dot(m.turned, m.turned)) {
+        : angle(without_whole_turns<D, F>(m.turned)), spin(m.w), series(angular_dot(angle, angle)) {
         const F squared = h * h * angular_dot(m.w, m.w);
         ahead = h * maximum(F(0), minimum(F(1), F(2) - F(50) * squared));
     }

@@ -113,6 +113,9 @@ ForceId<D> World<D>::add_force(const ForceDefinition<D>& definition) {
         w.wake(w.index(torque->body));
     } else if (auto* impulse = std::get_if<TimedImpulse<D>>(&resolved.kind)) {
         w.index(impulse->body);
+    } else if (auto* water = std::get_if<Buoyancy<D>>(&resolved.kind)) {
+        water->up = normalized(water->up);
+        w.wake_all();
     } else {
         w.wake_all();
     }

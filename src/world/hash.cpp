@@ -120,6 +120,11 @@ struct Folder {
     }
 
     template <int D>
+    void operator()(const Buoyancy<D>& f) {
+        all(f.up, f.surface, f.density, f.linear_drag, f.quadratic_drag, f.flow);
+    }
+
+    template <int D>
     void operator()(const BodyState<D>& s) {
         all(s.position, s.rotation, s.velocity, s.angular_velocity, s.turns);
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "carom/error.hpp"
+#include "dynamics/buoyancy.hpp"
 #include "world/state.hpp"
 
 // What the user reads between steps.
@@ -217,7 +218,11 @@ Energy World<D>::energy() const {
         sum.kinetic += e.kinetic;
         sum.potential += e.potential;
     }
-    sum.potential += state_->forces.potential({state_->states, state_->masses}, state_->time);
+    const WorldState<D>& w = *state_;
+    const std::vector<Buoyancy<D>> waters = w.forces.waters(w.time);
+    sum.potential += w.forces.potential({w.states, w.masses}, w.time);
+    if (!waters.empty())
+        sum.potential += energy_in_water<D>({w.states, w.masses, w.solids(), w.definition.gravity, waters});
     return sum;
 }
 

@@ -21,23 +21,13 @@
 #include "dynamics/flight.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/joint.hpp"
+#include "dynamics/solids.hpp"
 #include "geometry/shape.hpp"
 #include "solver/apart_store.hpp"
 #include "solver/joint_load.hpp"
 #include "solver/solver.hpp"
 
 namespace carom::detail {
-
-/// A shape that lives in the world.
-template <int D>
-struct ShapeRecord {
-    Shape<D> shape;
-    std::shared_ptr<const ShapeDefinition<D>> definition;  ///< shapes that are alike share one
-    std::uint32_t body = 0;
-    Vec<D> core{};  ///< of a convex shape: the middle of a ball half as large as fits into it
-    double core_radius = 0;
-    std::int32_t leaf = Tree<D>::none;  ///< in the tree that its body says
-};
 
 /// The trees of shapes: what rests is kept apart, as nothing about it changes, and what moves is often
 /// looked at as a whole.
@@ -216,7 +206,7 @@ struct WorldState {
     void begin_step(double dt);
     void list_moving();
     void list_awake(std::uint32_t body);
-    void sum_forces();
+    void sum_forces(double dt);
     void solve_constraints(double dt);
     void fly_free_bodies(double dt);
     void move_kinematic_bodies(double dt);
@@ -362,6 +352,7 @@ struct WorldState {
     std::uint32_t index(BodyId<D> body) const;
     std::uint32_t index(ShapeId<D> shape) const;
     Transform<D> frame_of(std::uint32_t body) const { return frame(states[body], masses[body]); }
+    Solids<D> solids() const { return {infos, shapes}; }
     /// A shape has its contacts in two lists: those of which one body is fixed, and the others.
     static std::uint32_t contact_list(std::uint32_t shape, bool on_fixed) { return 2 * shape + on_fixed; }
     static std::uint32_t shape_of_list(std::uint32_t list) { return list / 2; }

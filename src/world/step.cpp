@@ -159,10 +159,10 @@ void WorldState<D>::list_awake(std::uint32_t body) {
 }
 
 template <int D>
-void WorldState<D>::sum_forces() {
+void WorldState<D>::sum_forces(double dt) {
     for (const std::uint32_t i : awake) varies[i] = 0;
     forces.mark_fields(time, awake, varies);
-    LoadModel<D>{definition.gravity, applied, awake, forces}.sum({states, masses}, time, loads);
+    LoadModel<D>{definition.gravity, applied, awake, forces, solids()}.sum({states, masses}, time, loads, dt);
 }
 
 template <int D>
@@ -179,7 +179,13 @@ void WorldState<D>::fly_free_bodies(double dt) {
     for (const std::uint32_t i : awake) {
         if (types[i] == BodyType::dynamic && !solver.moves(i)) flying.push_back(i);
     }
-    const LoadModel<D> model{definition.gravity, applied, flying, forces};
+    const LoadModel<D> model{definition.gravity, applied, flying, forces, solids()};
+    // The loads are those of water half a step ahead, which is what the default integrator and the solver
+    // make of them a method of second order; the others ask for themselves.
+    if (definition.integrator != Integrator::semi_implicit_euler && !forces.waters(time).empty()) {
+        model.sum({states, masses}, time, loads);
+        for (const std::uint32_t i : flying) varies[i] = 1;
+    }
     fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);
     for (const std::uint32_t i : awake) applied[i] = {};
 }

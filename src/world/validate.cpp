@@ -82,6 +82,15 @@ void validate(const ForceDefinition<D>& f) {
             require_finite(kind.center, "center");
             require_finite(kind.gm, "gm");
         }
+        if constexpr (std::is_same_v<Kind, Buoyancy<D>>) {
+            require_finite(kind.up, "up");
+            if (!(length(normalized(kind.up)) > 0.5)) throw Error("up: a direction has a length");
+            require_finite(kind.surface, "surface");
+            require_not_negative(kind.density, "density");
+            require_not_negative(kind.linear_drag, "linear_drag");
+            require_not_negative(kind.quadratic_drag, "quadratic_drag");
+            require_finite(kind.flow, "flow");
+        }
         if constexpr (std::is_same_v<Kind, Spring<D>>) {
             require_finite(kind.anchor_a, "anchor_a");
             require_finite(kind.anchor_b, "anchor_b");

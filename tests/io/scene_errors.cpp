@@ -267,12 +267,25 @@ TEST(SceneErrors, surfaces) {
 TEST(SceneErrors, forces) {
     expect_refused({
         {force_text(2, "\"body\": \"b\""), "forces[0]: \"type\" is missing"},
-        {force_text(2, "\"type\": \"buoyancy\""),
-         "forces[0].type: \"buoyancy\" is not supported by this version"},
+        {force_text(2, "\"type\": \"buoyancy\""), "forces[0]: \"surface\" is missing"},
+        {force_text(2, "\"type\": \"buoyancy\", \"surface\": [0, 1]"),
+         "forces[0].surface: [0, 1] is not a number"},
+        {force_text(2, "\"type\": \"buoyancy\", \"surface\": {\"offset\": 1}"),
+         "forces[0].surface: \"normal\" is missing"},
+        {force_text(2, "\"type\": \"buoyancy\", \"surface\": {\"normal\": [0, 0], \"offset\": 1}"),
+         "forces[0].surface.normal: [0, 0] has no length"},
+        {force_text(2, "\"type\": \"buoyancy\", \"surface\": 0, \"density\": -1"),
+         "forces[0].density: -1 is negative"},
+        {force_text(2, "\"type\": \"buoyancy\", \"surface\": 0, \"drag\": -1"),
+         "forces[0].drag: -1 is negative"},
+        {force_text(2, "\"type\": \"buoyancy\", \"surface\": 0, \"drag\": {\"quadratic\": -1}"),
+         "forces[0].drag.quadratic: -1 is negative"},
+        {force_text(3, "\"type\": \"buoyancy\", \"surface\": 0, \"flow\": [1, 0]"),
+         "forces[0].flow: [1, 0] is not a list of 3 numbers [x, y, z]"},
         {force_text(2, "\"type\": \"magnet\""),
          "forces[0].type: \"magnet\" is not known; allowed are force, torque, impulse, drag, wind, "
          "point_gravity, "
-         "spring"},
+         "spring, buoyancy"},
         {force_text(2, "\"type\": \"force\", \"value\": [1, 0]"), "forces[0]: \"body\" is missing"},
         {force_text(2, "\"type\": \"force\", \"body\": \"c\", \"value\": [1, 0]"),
          "forces[0].body: \"c\" is not the name of a body"},

@@ -20,6 +20,7 @@ std::vector<std::string> scene_texts() {
     texts.push_back(
         body_text(2, R"("type": "kinematic", "locks": ["x"], "velocity": [1e3, 0], "bullet": true)"));
     texts.push_back(force_text(2, R"("type": "spring", "b": "b", "stiffness": 10, "to": 2)"));
+    texts.push_back(force_text(2, R"("type": "buoyancy", "surface": 1, "density": 900, "drag": 0.5)"));
     texts.push_back(force_text(3, R"("type": "drag", "quadratic": 0.5, "linear": 1)"));
     return texts;
 }

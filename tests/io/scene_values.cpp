@@ -270,6 +270,24 @@ TEST(SceneValues, forces) {
     EXPECT_EQ(gravity.gm, 4);
 }
 
+TEST(SceneValues, water) {
+    const auto lake = force_of<Buoyancy<2>, 2>(R"("type": "buoyancy", "surface": 3)");
+    EXPECT_EQ(lake.up, (Vec2{0, 1}));
+    EXPECT_EQ(lake.surface, 3);
+    EXPECT_EQ(lake.density, 1000);
+    EXPECT_EQ(lake.linear_drag, 0);
+    const auto river = force_of<Buoyancy<3>, 3>(
+        R"("type": "buoyancy", "surface": {"normal": [0, 2, 0], "offset": -1}, "density": 900,
+           "drag": {"linear": 1, "quadratic": 2}, "flow": [4, 5, 6])");
+    EXPECT_EQ(river.up, (Vec3{0, 2, 0}));
+    EXPECT_EQ(river.surface, -1);
+    EXPECT_EQ(river.density, 900);
+    EXPECT_EQ(river.linear_drag, 1);
+    EXPECT_EQ(river.quadratic_drag, 2);
+    EXPECT_EQ(river.flow, (Vec3{4, 5, 6}));
+    EXPECT_EQ((force_of<Buoyancy<2>, 2>(R"("type": "buoyancy", "surface": 0, "drag": 7)").linear_drag), 7);
+}
+
 TEST(SceneValues, springs_and_times) {
     const auto data = data_of<2>(scene_text(2, R"("bodies": [
             {"shapes": [{"type": "ball", "radius": 1}]},

@@ -22,6 +22,7 @@ std::span<const Case> validation_cases() {
         {"C3", "a chain of ten rods, let go from the horizontal", falling_chain},
         {"C5", "simple machines: pulley, gear, spring, lever", simple_machines},
         {"C6", "chains with a heavy end, and a catenary", heavy_end},
+        {"D4", "bodies that float: draft, bobbing, the way up", floating_bodies},
     };
     return cases;
 }

@@ -23,5 +23,6 @@ std::vector<Result> double_pendulum();
 std::vector<Result> falling_chain();
 std::vector<Result> simple_machines();
 std::vector<Result> heavy_end();
+std::vector<Result> floating_bodies();
 
 }  // namespace carom::app
