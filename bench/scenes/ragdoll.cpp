@@ -105,13 +105,12 @@ decltype(JointDefinition3::kind) joint_of(const BoneOfTable& bone) {
     const JointSpring spring{.frequency = 1, .damping_ratio = 0.7};
     const Vec3 anchor = apply(parent, bone.anchor_a);
     if (bone.is_hinge) {
-        HingeJoint<3> hinge{.anchor = anchor,
-                            .axis = axis_a,
-                            .limits = twist,
-                            .motor = JointMotor{.speed = 0, .max = 5 * bone.friction},
-                            .spring = spring};
-        hinge.spring->rest = -start;
-        return hinge;
+        JointSpring hinge_spring = spring;
+        hinge_spring.rest = -start;
+        JointMotor friction;
+        friction.max = 5 * bone.friction;
+        return HingeJoint<3>{
+            .anchor = anchor, .axis = axis_a, .limits = twist, .motor = friction, .spring = hinge_spring};
     }
     return BallJoint<3>{.anchor = anchor,
                         .axis = axis_b,

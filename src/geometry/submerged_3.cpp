@@ -87,13 +87,18 @@ struct Cuts {
         const double middle = atan2(b, a), half = acos(c / size);
         for (double angle : {middle - half, middle + half}) {
             if (angle < 0) angle += 2 * pi;
-            if (angle > 0 && angle < end) at[count++] = angle;
+            if (angle > 0 && angle < end) insert(angle);
         }
+    }
+    /// In order, after the zero at the front.
+    void insert(double angle) {
+        std::size_t i = count++;
+        for (; i > 1 && at[i - 1] > angle; --i) at[i] = at[i - 1];
+        at[i] = angle;
     }
     template <class Visit>
     void each_piece(const Visit& visit) {
         at[count++] = end;
-        std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count));
         for (std::size_t i = 0; i + 1 < count; ++i) each_node(at[i], at[i + 1], visit);
     }
 };

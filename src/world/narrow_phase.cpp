@@ -26,6 +26,16 @@ double roundness(const Shape<D>& shape, const Vec<D>& normal) {
 
 }  // namespace
 
+namespace {
+
+/// Has the shape nothing but flat faces, so that what touches stays where it is on them?
+template <int D>
+bool is_flat(const Shape<D>& shape) {
+    return (shape.kind == ShapeKind::box || shape.kind == ShapeKind::hull) && shape.radius == 0;
+}
+
+}  // namespace
+
 /// The manifold of two bodies that are placed so, marked on both.
 template <int D>
 void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, const BodyState<D>& b,
@@ -39,7 +49,8 @@ void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, cons
     cache.pose = RelativePose<D>(a, b);
     cache.normal = narrow<float>(m.normal);
     cache.normal_of = m.normal_of;
-    if (m.normal_of == NormalOf::neither) {
+    const bool flat = is_flat(shape_a) && is_flat(shape_b);
+    if (m.normal_of == NormalOf::neither || !flat) {
         cache.way *= reuse_without_face;
         cache.turn *= reuse_without_face;
     }
