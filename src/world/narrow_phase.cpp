@@ -99,8 +99,14 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         meet_ahead(c, cache, dt);
         if (c.count > 0) cache.forget();  // these points are of another time
     }
-    if (c.count == 0 && c.restitution > 0 && definition.continuous) {
-        // One of the bodies may be struck within the step and then come here.
+    const auto is_alone = [&](std::uint32_t body) {
+        int others = 0;
+        if (types[body] != BodyType::fixed) each_contact_of(body, [&](std::uint32_t) { ++others; });
+        return others < 2;
+    };
+    if (c.count == 0 && c.restitution > 0 && definition.continuous &&
+        !(is_alone(c.body_a) && is_alone(c.body_b))) {
+        // One of the bodies may be struck by another within the step and then come here.
         const double struck_way = dt * (length(sa.velocity) + length(sb.velocity)) + speculative_distance;
         const double far = std::min(struck_way, smaller_radius(ma, mb));
         if (cache.least_gap(pose, mb.radius) <= far && far > reach) {
