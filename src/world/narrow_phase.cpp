@@ -104,9 +104,14 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         if (types[body] != BodyType::fixed) each_contact_of(body, [&](std::uint32_t) { ++others; });
         return others < 2;
     };
-    if (c.count == 0 && c.restitution > 0 && definition.continuous &&
-        !(is_alone(c.body_a) && is_alone(c.body_b))) {
-        // One of the bodies may be struck by another within the step and then come here.
+    const auto is_simple = [&](std::uint32_t shape) {
+        const ShapeKind kind = shapes[shape].shape.kind;
+        return kind == ShapeKind::ball || kind == ShapeKind::plane;
+    };
+    if (c.count == 0 && c.restitution > 0 && definition.continuous && is_simple(c.shape_a) &&
+        is_simple(c.shape_b) && !(is_alone(c.body_a) && is_alone(c.body_b))) {
+        // One of the bodies may be struck by another within the step and then come here. Of other shapes the
+        // point at which they would touch cannot be told from so far.
         const double struck_way = dt * (length(sa.velocity) + length(sb.velocity)) + speculative_distance;
         const double far = std::min(struck_way, smaller_radius(ma, mb));
         if (cache.least_gap(pose, mb.radius) <= far && far > reach) {
