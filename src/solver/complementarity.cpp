@@ -61,6 +61,10 @@ void solve_complementarity(std::span<const double> matrix, std::span<const doubl
         std::ranges::fill(x, 0.0);
         return;
     }
+    if (n == 1) {
+        x[0] = std::max(0.0, -b[0] / matrix[0]);
+        return;
+    }
     const double speed_noise = 1e-12 * fastest, push_noise = speed_noise / largest;
     ChosenRows system(matrix, b, 1e-11 * largest);
 

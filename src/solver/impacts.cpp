@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace carom::detail {
@@ -15,6 +16,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double slow_share = 0.05;
 /// The same, of the blow that began it: what is slower does not bounce, and what is slower still is rest.
 constexpr double dead_share = 1e-5, rest_share = 1e-9;
+/// The same when a blow has gone on for long.
+constexpr double crude_share = 1e-3;
+/// What it costs to find the time of an impact, in looks at a point that touches.
+constexpr std::size_t cost_of_time = 30;
 /// A bounce that would last less than this share of a sub-step is rest.
 constexpr double least_flight = 1.0 / 16;
 /// A gap that the solver does not take for closed.
@@ -95,6 +100,8 @@ std::uint32_t ImpactSolver<D>::flight_of(std::uint32_t slot, const ImpactView<D>
         place = static_cast<std::uint32_t>(flights_.size());
         flights_.push_back({});
         flights_.back().slot = slot;
+        if (points_of_.size() < flights_.size()) points_of_.resize(flights_.size());
+        points_of_[place].clear();
         load(flights_.back(), view);
     }
     return place;
@@ -135,8 +142,10 @@ void ImpactSolver<D>::add_contact(const Candidate& c, const ImpactView<D>& view)
         {c.section, c.index, a, b, store.restitution(c.index), widen<D>(store.rows().get(c.index))});
     for (std::uint32_t k = 0; k < Rows::capacity; ++k) {
         if (!(contacts_.back().rows.points[k].mass > 0)) continue;
-        points_.push_back({contact, k, 0, 0, false, false});
-        find_impact(points_.back(), 0, view);
+        const auto point = static_cast<std::uint32_t>(points_.size());
+        points_.push_back({contact, k});
+        for (const std::uint32_t flight : {a, b}) points_of_[flight].push_back(point);
+        expect(point, 0, view);
     }
 }
 
@@ -217,9 +226,9 @@ void ImpactSolver<D>::find_impact(Point& p, double from, const ImpactView<D>& vi
     p.speed = -speed_at(p, p.time);
     const Contact& c = contacts_[p.contact];
     const bool thrown = flights_[c.a].struck || flights_[c.b].struck;
-    const bool bounces = c.restitution > 0 && p.speed > view.threshold;
     const double least_speed = least_flight * h * std::fabs(acceleration) + 1e-9;
-    const bool is_impact = p.speed > least_speed && (bounces || thrown);
+    const bool bounces = c.restitution > 0;
+    const bool is_impact = p.speed > std::max(least_speed, view.threshold) && (bounces || thrown);
     p.comes = is_impact && bounces && p.time > h && (p.time - h) * p.speed < 4 * closed_gap;
     if (!is_impact || p.time > h) p.time = infinite;
 }
@@ -244,10 +253,9 @@ void ImpactSolver<D>::involve(std::uint32_t flight, double time, const ImpactVie
     take(flight);
     if (involved_[flight] == 2 || flights_[flight].slot < view.bodies.first_movable) return;
     involved_[flight] = 2;
-    for (std::uint32_t k = 0; k < points_.size(); ++k) {
+    for (const std::uint32_t k : points_of_[flight]) {
         const Contact& c = contacts_[points_[k].contact];
-        if (is_touching_[k] || (c.a != flight && c.b != flight)) continue;
-        if (gap_at(points_[k], time) > closed_gap) continue;
+        if (is_touching_[k] || gap_at(points_[k], time) > closed_gap) continue;
         is_touching_[k] = 1;
         touching_.push_back(k);
         take(c.a);
@@ -255,40 +263,70 @@ void ImpactSolver<D>::involve(std::uint32_t flight, double time, const ImpactVie
     }
 }
 
+/// Works out when the point is struck, and notes it in the queue.
+template <int D>
+void ImpactSolver<D>::expect(std::uint32_t point, double from, const ImpactView<D>& view) {
+    find_impact(points_[point], from, view);
+    if (points_[point].time == infinite) return;
+    queue_.emplace_back(points_[point].time, point);
+    std::ranges::push_heap(queue_, std::greater{});
+}
+
+/// The point that is struck first, or `none`. It is no longer in the queue.
+template <int D>
+std::uint32_t ImpactSolver<D>::take_first() {
+    while (!queue_.empty()) {
+        std::ranges::pop_heap(queue_, std::greater{});
+        const auto [time, point] = queue_.back();
+        queue_.pop_back();
+        if (points_[point].time == time) return point;
+    }
+    return none;
+}
+
 /// Does the first impact of what is left of the sub-step; returns false when there is none.
 template <int D>
 bool ImpactSolver<D>::strike_first(const ImpactView<D>& view) {
-    double time = infinite, speed = 0;
-    for (const Point& p : points_) time = std::min(time, p.time);
-    if (time == infinite) return false;
+    const std::uint32_t earliest = take_first();
+    if (earliest == none) return false;
+    const double time = points_[earliest].time;
+    double speed = points_[earliest].speed;
+    first_.assign(1, earliest);
+    while (!queue_.empty() && (queue_.front().first - time) * speed <= closed_gap) {
+        const std::uint32_t next = take_first();
+        if (next == none) break;
+        first_.push_back(next);
+        speed = std::max(speed, points_[next].speed);
+    }
     touching_.clear();
     involved_flights_.clear();
-    const std::size_t count = points_.size();
-    for (std::uint32_t k = 0; k < count; ++k) {
+    for (const std::uint32_t k : first_) {
         const Point p = points_[k];
-        if (p.time == infinite || (p.time - time) * p.speed > closed_gap) continue;
-        speed = std::max(speed, p.speed);
+        if ((p.time - time) * p.speed > closed_gap) continue;
         involve(contacts_[p.contact].a, time, view);
         involve(contacts_[p.contact].b, time, view);
     }
     run_rounds(time, speed, view);
     apply(time);
-    for (std::uint32_t k = 0; k < points_.size(); ++k) {
-        const Contact& c = contacts_[points_[k].contact];
-        const bool taken =
-            (c.a < involved_.size() && involved_[c.a]) || (c.b < involved_.size() && involved_[c.b]);
-        if (taken || k >= count) find_impact(points_[k], time, view);
+
+    for (const std::uint32_t f : involved_flights_) {
+        if (flights_[f].struck) first_.insert(first_.end(), points_of_[f].begin(), points_of_[f].end());
+        involved_[f] = 0;
     }
-    for (const std::uint32_t f : involved_flights_) involved_[f] = 0;
     for (const std::uint32_t k : touching_) is_touching_[k] = 0;
-    return true;
+    std::ranges::sort(first_);
+    const auto repeated = std::ranges::unique(first_);
+    first_.erase(repeated.begin(), repeated.end());
+    for (const std::uint32_t k : first_) expect(k, time, view);
+    work_ += cost_of_time * first_.size();
+    return work_ < most_work();
 }
 
 template <int D>
 void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>& view) {
-    constexpr std::size_t much_work = 50'000;
+    constexpr std::size_t much_work = 4000;
     const bool bounces = speed > view.threshold;
-    double rest = rest_share * speed;
+    double rest = rest_share * speed, dead = dead_share * speed;
     std::size_t work = 0;
     while (rest < speed) {
         const auto approach = [&](std::uint32_t k) {
@@ -307,7 +345,7 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
             if (now < slow_share * fastest || now <= rest) continue;
             const Contact& c = contacts_[points_[k].contact];
             const NormalRow<D, double>& row = c.rows.points[points_[k].number];
-            const double restitution = bounces && now > dead_share * speed ? c.restitution : 0;
+            const double restitution = bounces && now > dead ? c.restitution : 0;
             chosen_.push_back(k);
             strikes_.push_back({c.a,
                                 c.b,
@@ -323,7 +361,8 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
         }
         reflection_.reflect(bodies_, strikes_);
         work += touching_.size() + 16 * chosen_.size();
-        if (work > much_work) rest *= 2;
+        if (work > much_work) rest = std::max(2 * rest, crude_share * speed), dead = std::max(dead, rest);
+        if (work_ + work > most_work()) break;
         for (std::size_t i = 0; i < chosen_.size(); ++i) {
             tally(strikes_[i], points_[chosen_[i]], view);
             points_[chosen_[i]].struck = true;
@@ -331,6 +370,7 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
             involve(strikes_[i].b, time, view);
         }
     }
+    work_ += work;
 }
 
 /// What the rows say of the step's impulses includes the blow.
@@ -367,15 +407,16 @@ void ImpactSolver<D>::apply(double time) {
 template <int D>
 void ImpactSolver<D>::strike(const ImpactView<D>& view) {
     straighten(view);
+    queue_.clear();
+    work_ = 0;
     for (Flight& f : flights_) load(f, view);
     for (Point& p : points_) p.struck = false;
     if (contacts_.empty()) {
         for (const Candidate& c : candidates_) add_contact(c, view);
     } else {
-        for (Point& p : points_) find_impact(p, 0, view);
+        for (std::uint32_t k = 0; k < points_.size(); ++k) expect(k, 0, view);
     }
-    const std::size_t most_impacts = 64 + 8 * contacts_.size();
-    for (std::size_t count = 0; count < most_impacts && strike_first(view); ++count) {
+    while (strike_first(view)) {
     }
 
     for (const Flight& f : flights_) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "solver/contact_store.hpp"
@@ -103,6 +104,9 @@ class ImpactSolver {
     double speed_at(const Point& point, double time) const;
     void find_impact(Point& point, double from, const ImpactView<D>& view) const;
     bool strike_first(const ImpactView<D>& view);
+    void expect(std::uint32_t point, double from, const ImpactView<D>& view);
+    std::uint32_t take_first();
+    std::size_t most_work() const { return 20'000 + 30 * points_.size(); }
     void involve(std::uint32_t flight, double time, const ImpactView<D>& view);
     void run_rounds(double time, double speed, const ImpactView<D>& view);
     void apply(double time);
@@ -115,7 +119,11 @@ class ImpactSolver {
     std::vector<Flight> flights_;
     std::vector<Contact> contacts_;
     std::vector<Point> points_;
+    std::vector<std::vector<std::uint32_t>> points_of_;  ///< by flight
     std::vector<Bent> bent_;
+    std::vector<std::pair<double, std::uint32_t>>
+        queue_;             ///< a heap of times and points; some are of the past
+    std::size_t work_ = 0;  ///< in this sub-step
     std::vector<std::uint32_t> flight_of_slot_;
     std::vector<std::uint32_t> links_begin_;        ///< by slot, and one more: its contacts in `links_`
     std::vector<Candidate> links_;                  ///< by slot
@@ -127,6 +135,7 @@ class ImpactSolver {
     std::vector<std::uint32_t> involved_flights_;
     std::vector<std::uint32_t> touching_;    ///< points that have closed, of these
     std::vector<std::uint8_t> is_touching_;  ///< by point
+    std::vector<std::uint32_t> first_;       ///< points that began it
     std::vector<std::uint32_t> chosen_;      ///< points that are reflected
     std::vector<ImpactPoint<D>> strikes_;    ///< the same
     Reflection<D> reflection_;

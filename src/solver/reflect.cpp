@@ -9,6 +9,9 @@ namespace carom::detail {
 
 namespace {
 
+/// More points than this are solved by sweeps.
+constexpr std::size_t most_at_once = 64;
+
 template <int D>
 bool is_movable(const ImpactBody<D>& body) {
     double most = 0;
@@ -97,7 +100,7 @@ void Reflection<D>::reflect(std::span<ImpactBody<D>> bodies, std::span<ImpactPoi
 template <int D>
 void Reflection<D>::sweep_normals(std::span<ImpactBody<D>> bodies, std::span<const ImpactPoint<D>> points,
                                   std::span<const std::uint32_t> group) {
-    constexpr int sweeps = 60;
+    constexpr int sweeps = 16;
     const std::size_t n = group.size();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (std::size_t k = 0; k < n; ++k) {
@@ -117,7 +120,6 @@ void Reflection<D>::sweep_normals(std::span<ImpactBody<D>> bodies, std::span<con
 template <int D>
 void Reflection<D>::solve_normals(std::span<ImpactBody<D>> bodies, std::span<ImpactPoint<D>> points,
                                   std::span<const std::uint32_t> group) {
-    constexpr std::size_t most_at_once = 96;
     const std::size_t n = group.size();
     speed_.resize(n);
     push_.assign(n, 0);
@@ -170,50 +172,62 @@ void Reflection<D>::solve_normals(std::span<ImpactBody<D>> bodies, std::span<Imp
     }
 }
 
+/// The stiffest that slip is at a point: the largest change of slip that a unit impulse along a tangent
+/// makes.
+template <int D>
+double stiffness(std::span<const ImpactBody<D>> bodies, const ImpactPoint<D>& p) {
+    const ImpactBody<D>&a = bodies[p.a], &b = bodies[p.b];
+    double sum = 0;
+    for (const Vec<D>& t : p.tangents) sum += compliance(t, p.arm_a, p.arm_b, a.weight, b.weight);
+    if constexpr (D == 3) {  // the larger eigenvalue of the 2×2 system
+        const auto [t1, t2] = p.tangents;
+        Motion<3, double> ma{}, mb{};
+        push(ma, mb, a.weight, b.weight, p.arm_a, p.arm_b, t1);
+        const Vec<3> made = relative_velocity(ma, mb, p.arm_a, p.arm_b);
+        const double k11 = dot(t1, made), k12 = dot(t2, made), k22 = sum - k11;
+        sum = 0.5 * (sum + std::sqrt((k11 - k22) * (k11 - k22) + 4 * k12 * k12));
+    }
+    return sum;
+}
+
 /// Each point in turn goes against the slip that is left, as far as its bound lets it, until nothing changes.
 /// A step is no longer than the stiffest direction allows, so that none makes energy.
 template <int D>
 void Reflection<D>::solve_friction(std::span<ImpactBody<D>> bodies, std::span<ImpactPoint<D>> points,
                                    std::span<const std::uint32_t> group) {
-    constexpr int sweeps = 100;
-    for (const std::uint32_t i : group) points[i].tangential = {};
+    constexpr double precision = 1e-10;
+    const int sweeps = group.size() <= most_at_once ? 100 : 8;
+    push_.clear();
+    for (const std::uint32_t i : group) {
+        points[i].tangential = {};
+        const bool rough = points[i].friction * points[i].impulse > 0;
+        push_.push_back(rough ? stiffness<D>(bodies, points[i]) : 0);
+    }
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         double change = 0, largest = 0;
-        for (const std::uint32_t i : group) {
-            ImpactPoint<D>& p = points[i];
+        for (std::size_t k = 0; k < group.size(); ++k) {
+            ImpactPoint<D>& p = points[group[k]];
+            if (!(push_[k] > 0)) continue;
             const double limit = p.friction * p.impulse;
-            if (!(limit > 0)) continue;
-            const ImpactBody<D>&a = bodies[p.a], &b = bodies[p.b];
-            double weight = 0;
-            for (const Vec<D>& t : p.tangents) weight += compliance(t, p.arm_a, p.arm_b, a.weight, b.weight);
-            if constexpr (D == 3) {  // the larger eigenvalue of the 2×2 system, by its trace and determinant
-                const auto [t1, t2] = p.tangents;
-                Motion<3, double> ma{}, mb{};
-                push(ma, mb, a.weight, b.weight, p.arm_a, p.arm_b, t1);
-                const Vec<3> made = relative_velocity(ma, mb, p.arm_a, p.arm_b);
-                const double k11 = dot(t1, made), k12 = dot(t2, made), k22 = weight - k11;
-                weight = 0.5 * (weight + std::sqrt((k11 - k22) * (k11 - k22) + 4 * k12 * k12));
-            }
-            if (!(weight > 0)) continue;
             const Vec<D> slip = speed_between<D>(bodies, p);
             std::array<double, D - 1> next;
-            double length = 0;
-            for (int k = 0; k < D - 1; ++k) {
-                next[k] = p.tangential[k] - (dot(p.tangents[k], slip) + p.surface_speed[k]) / weight;
-                length += next[k] * next[k];
+            double squared = 0;
+            for (int j = 0; j < D - 1; ++j) {
+                next[j] = p.tangential[j] - (dot(p.tangents[j], slip) + p.surface_speed[j]) / push_[k];
+                squared += next[j] * next[j];
             }
-            length = std::sqrt(length);
+            const double cut = squared > limit * limit ? limit / std::sqrt(squared) : 1;
             Vec<D> impulse{};
-            for (int k = 0; k < D - 1; ++k) {
-                if (length > limit) next[k] *= limit / length;
-                impulse += (next[k] - p.tangential[k]) * p.tangents[k];
+            for (int j = 0; j < D - 1; ++j) {
+                next[j] *= cut;
+                impulse += (next[j] - p.tangential[j]) * p.tangents[j];
             }
             p.tangential = next;
             give(bodies, p, impulse);
             change = std::max(change, dot(impulse, impulse));
             largest = std::max(largest, limit * limit);
         }
-        if (!(change > 1e-26 * largest)) break;
+        if (!(change > precision * precision * largest)) break;
     }
 }
 

@@ -195,7 +195,8 @@ bool WorldState<D>::can_be_carried(const ContactRecord<D>& c, const ContactCache
 /// gap between shapes that are not infinite. Where several fixed shapes may be one surface, each counts.
 template <int D>
 bool WorldState<D>::can_stay_apart(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
-    if (!definition.continuous || c.count > 0 || c.touching || c.merged || c.special) return false;
+    if (!definition.continuous || c.count > 0 || c.touching || c.merged || c.special || may_be_struck(c))
+        return false;
     if (cache.count > 0 || cache.way < 0 || cache.normal == Vec<D, float>{}) return false;
     return masses[c.body_b].radius > 0 && (!c.on_fixed || fixed_contacts_of[mover(c)] == 1);
 }

@@ -96,6 +96,36 @@ void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>&
     }
 }
 
+/// Does it count for these two shapes, while they are apart, where a third may throw them within the step? Of
+/// other shapes than balls the point at which they would touch cannot be told from far.
+template <int D>
+bool WorldState<D>::may_be_struck(const ContactRecord<D>& c) const {
+    const auto is_simple = [&](std::uint32_t shape) {
+        const ShapeKind kind = shapes[shape].shape.kind;
+        return kind == ShapeKind::ball || kind == ShapeKind::plane;
+    };
+    return c.restitution > 0 && definition.continuous && is_simple(c.shape_a) && is_simple(c.shape_b);
+}
+
+/// One of the bodies may be struck by another within the step and then come here.
+template <int D>
+void WorldState<D>::meet_struck(ContactRecord<D>& c, ContactCache<D>& cache, double reach, double dt) const {
+    const auto is_alone = [&](std::uint32_t body) {
+        int others = 0;
+        if (types[body] != BodyType::fixed) each_contact_of(body, [&](std::uint32_t) { ++others; });
+        return others < 2;
+    };
+    if (is_alone(c.body_a) && is_alone(c.body_b)) return;
+    const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
+    const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
+    const double way = dt * (length(sa.velocity) + length(sb.velocity)) + speculative_distance;
+    const double far = std::min(way, smaller_radius(ma, mb));
+    if (far <= reach || cache.least_gap(RelativePose<D>(sa, sb), mb.radius) > far) return;
+    touch(c, sa, sb, far, cache);
+    set_points(cache, sa, sb, far, c);
+    if (c.count > 0) cache.forget();
+}
+
 template <int D>
 void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, double dt) const {
     const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
@@ -106,7 +136,8 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
     const RelativePose<D> pose(sa, sb);
     const double least_gap = cache.least_gap(pose, mb.radius);
     const bool is_slow = !definition.continuous || way <= 0.5 * speculative_distance;
-    if (is_slow && least_gap > reach && c.count == 0 && !c.merged && !c.special) return;
+    const bool idle = c.count == 0 && !c.merged && !c.special && !may_be_struck(c);
+    if (idle && is_slow && least_gap > reach) return;
     const ContactRecord<D> old = c;
     if (least_gap <= reach && !cache.holds(pose)) {
         // Points that are out of reach by less than the bodies may move before this is done again count too.
@@ -123,16 +154,7 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
         meet_ahead(c, cache, dt);
         if (c.count > 0) cache.forget();  // these points are of another time
     }
-    if (c.count == 0 && c.restitution > 0 && definition.continuous) {
-        // One of the bodies may be struck within the step and then come here.
-        const double struck_way = dt * (length(sa.velocity) + length(sb.velocity)) + speculative_distance;
-        const double far = std::min(struck_way, smaller_radius(ma, mb));
-        if (cache.least_gap(pose, mb.radius) <= far && far > reach) {
-            touch(c, sa, sb, far, cache);
-            set_points(cache, sa, sb, far, c);
-            if (c.count > 0) cache.forget();
-        }
-    }
+    if (c.count == 0 && may_be_struck(c)) meet_struck(c, cache, reach, dt);
     if (c.special) {
         pass_one_way(c, old.count > 0 || old.passing);
         drag_along(c);
@@ -166,6 +188,7 @@ void WorldState<D>::collide(double dt) {
                                        double, ContactCache<D>&) const;                                   \
     template void WorldState<D>::set_points(const ContactCache<D>&, const BodyState<D>&,                  \
                                             const BodyState<D>&, double, ContactRecord<D>&) const;        \
+    template bool WorldState<D>::may_be_struck(const ContactRecord<D>&) const;                            \
     template void WorldState<D>::collide(double);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -259,6 +259,8 @@ struct WorldState {
     // narrow_phase.cpp: who touches whom, and where.
     void collide(double dt);
     void update_contact(ContactRecord<D>& contact, ContactCache<D>& cache, double dt) const;
+    bool may_be_struck(const ContactRecord<D>& contact) const;
+    void meet_struck(ContactRecord<D>& contact, ContactCache<D>& cache, double reach, double dt) const;
     void touch(const ContactRecord<D>& contact, const BodyState<D>& a, const BodyState<D>& b, double reach,
                ContactCache<D>& cache) const;
     void set_points(const ContactCache<D>& cache, const BodyState<D>& a, const BodyState<D>& b, double reach,

@@ -76,6 +76,12 @@ void expect_gold(const std::string& name, const std::vector<std::string>& parts)
 
 TEST(PhysicsCases, DefaultWorldFliesExactly) { expect_gold("A1", {"default world"}); }
 TEST(PhysicsCases, TennisRacketIsGold) { expect_gold("A5", {}); }
+TEST(PhysicsCases, BouncingBallIsGold) { expect_gold("B6", {}); }
+TEST(PhysicsCases, CradlesAreGold) {
+    expect_gold("B8", {"in empty space"});
+    expect_gold("B8", {"smooth floor"});
+}
+TEST(PhysicsCases, MirrorImagesAreGold) { expect_gold("B8", {"asymmetry"}); }
 TEST(PhysicsCases, FrictionIsTheSameInEveryDirection) { expect_gold("B2", {"upright", "spread"}); }
 
 }  // namespace
