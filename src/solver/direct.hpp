@@ -11,6 +11,17 @@
 
 namespace carom::detail {
 
+template <int D>
+Wrench<D, double> operator*(double factor, const Wrench<D, double>& w) {
+    return {factor * w.force, w.on_a * factor, w.on_b * factor};
+}
+template <int D>
+void add(Wrench<D, double>& sum, const Wrench<D, double>& w) {
+    sum.force += w.force;
+    sum.on_a = sum.on_a + w.on_a;
+    sum.on_b = sum.on_b + w.on_b;
+}
+
 /// Joints that are solved at once. What hangs together by joints through bodies that can be pushed is a group
 /// with a matrix J M⁻¹ Jᵀ, which has a block for each joint and for each two joints of a body. It is
 /// factorised in each pass, in double precision. So the joints of a group agree, however long its chains are
