@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace carom::detail {
 
 namespace {
 
-constexpr int free_rounds = 3;        ///< in which limits, motors and friction find which of them hold
-constexpr int most_rounds = 12;       ///< with those in which they only let go
-constexpr int most_sweeps = 3;        ///< of refinement
-constexpr double small_speed = 1e-8;  ///< m/s and rad/s
-constexpr int most_turns = 4;         ///< in which directions and velocities agree
+constexpr int free_rounds = 3;         ///< in which limits, motors and friction find which of them hold
+constexpr int most_rounds = 12;        ///< with those in which they only let go
+constexpr int most_sweeps = 3;         ///< of refinement
+constexpr double small_speed = 1e-8;   ///< m/s and rad/s
+constexpr int most_turns = 8;          ///< in which directions and velocities agree
+constexpr double small_change = 1e-5;  ///< m and rad in a sub-step
 
 template <int D>
 Motion<D, double> widen(const Motion<D, float>& m) {
@@ -302,7 +302,7 @@ void DirectSolver<D>::solve_group(const Group& group) {
         if (turn == 0) take_back(group);
         re_aim(group);
         solve_as_laid(group);
-        if (!has_turned(group)) break;
+        if (misdirection(group) < small_change) break;
     }
     mend(group);
 }

@@ -108,7 +108,7 @@ class DirectSolver {
     void stiffen_by(const DirectJoint<D>& joint, const JointArms<D>& arms);
     void take_back(const Group& group);
     void re_aim(const Group& group);
-    bool has_turned(const Group& group) const;
+    double misdirection(const Group& group) const;
     void set_effects(const DirectJoint<D>& joint);
     void assemble(const Group& group);
     void weigh(std::uint32_t node);

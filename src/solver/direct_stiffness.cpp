@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "solver/direct.hpp"
@@ -8,8 +9,6 @@
 namespace carom::detail {
 
 namespace {
-
-constexpr double small_change = 1e-5;  ///< rad and m in a sub-step
 
 Vec<2> times(const Symmetric3<double>& m, const Vec<2>& v) {
     return {m.xx * v.x + m.xy * v.y, m.xy * v.x + m.yy * v.y};
@@ -173,16 +172,16 @@ void DirectSolver<D>::re_aim(const Group& group) {
     }
 }
 
-/// Do the directions as laid differ from those that the velocities say now?
+/// By how much bodies go and turn in a sub-step otherwise than as the rows were laid, at most; m and rad.
 template <int D>
-bool DirectSolver<D>::has_turned(const Group& group) const {
+double DirectSolver<D>::misdirection(const Group& group) const {
+    double most = 0;
     for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
         const Angular<D> change = members_[i].motion.w - members_[i].laid_spin;
         const Vec<D> way = members_[i].motion.v - members_[i].laid_velocity;
-        const double squared = angular_dot(change, change) + dot(way, way);
-        if (step_.h * step_.h * squared > small_change * small_change) return true;
+        most = std::max(most, angular_dot(change, change) + dot(way, way));
     }
-    return false;
+    return step_.h * std::sqrt(most);
 }
 
 #define CAROM_INSTANTIATE(D)                                           \
@@ -190,7 +189,7 @@ bool DirectSolver<D>::has_turned(const Group& group) const {
     template void DirectSolver<D>::stiffen(const Group&);              \
     template void DirectSolver<D>::take_back(const Group&);            \
     template void DirectSolver<D>::re_aim(const Group&);               \
-    template bool DirectSolver<D>::has_turned(const Group&) const;
+    template double DirectSolver<D>::misdirection(const Group&) const;
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE
