@@ -40,8 +40,7 @@ void read_world(const Value& value, WorldDefinition<D>& world, double& step) {
     read_object(
         value, {field("gravity", world.gravity), field("step", length_of_step),
                 field("substeps", world.substeps), field("integrator", integrator), field("impacts", impacts),
-                field("joints", joints),
-                field("sleep", world.sleep), field("continuous", world.continuous),
+                field("joints", joints), field("sleep", world.sleep), field("continuous", world.continuous),
                 not_negative("restitution_threshold", world.restitution_threshold),
                 not_negative("hit_speed", world.hit_speed)});
 }

@@ -153,7 +153,8 @@ struct Folder {
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>
     void operator()(const WorldDefinition<D>& w) {
-        all(w.gravity, w.substeps, w.integrator, w.impacts, w.joints, w.sleep, w.continuous, w.restitution_threshold);
+        all(w.gravity, w.substeps, w.integrator, w.impacts, w.joints, w.sleep, w.continuous,
+            w.restitution_threshold);
     }
 
     template <class... Parts>
