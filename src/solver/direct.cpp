@@ -7,12 +7,13 @@ namespace carom::detail {
 
 namespace {
 
-constexpr int free_rounds = 3;         ///< in which limits, motors and friction find which of them hold
-constexpr int most_rounds = 12;        ///< with those in which they only let go
-constexpr int most_sweeps = 3;         ///< of refinement
-constexpr double small_speed = 1e-8;   ///< m/s and rad/s
-constexpr int most_turns = 8;          ///< in which directions and velocities agree
-constexpr double small_change = 1e-5;  ///< m and rad in a sub-step
+constexpr int free_rounds = 3;             ///< in which limits, motors and friction find which of them hold
+constexpr int most_rounds = 12;            ///< with those in which they only let go
+constexpr int most_sweeps = 3;             ///< of refinement
+constexpr double small_speed = 1e-8;       ///< m/s and rad/s
+constexpr int most_turns = 8;              ///< in which directions and velocities agree
+constexpr double small_change = 1e-5;      ///< m and rad in a sub-step
+constexpr double most_misdirection = 0.1;  ///< beyond which they do not agree
 
 template <int D>
 Motion<D, double> widen(const Motion<D, float>& m) {
@@ -286,6 +287,30 @@ void DirectSolver<D>::solve_as_laid(const Group& group) {
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) keep_impulses(joints_[k]);
 }
 
+/// Where velocities and directions do not come to agree: from the velocities without the joints to the
+/// nearest that the rows allow, with impulses and speeds along the same directions. That takes energy away
+/// and never gives any.
+template <int D>
+void DirectSolver<D>::project(const Group& group) {
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        Member& m = members_[i];
+        m.motion.v = m.free;
+        m.motion.w = m.free_spin;
+        m.given = {};
+        m.given_spin = {};
+    }
+    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
+        DirectJoint<D>& joint = joints_[k];
+        joint.impulses = {};
+        joint.across_impulse = joint.rubbed = {};
+        lay<true>(joint);
+        for (Row& row : rows_of(joint)) row.end = row.middle;
+        arms_[k] = {};
+    }
+    stiffen(group);
+    solve_as_laid(group);
+}
+
 /// The velocities that are found turn the directions along which they were found; so it is done again.
 template <int D>
 void DirectSolver<D>::solve_group(const Group& group) {
@@ -304,6 +329,7 @@ void DirectSolver<D>::solve_group(const Group& group) {
         solve_as_laid(group);
         if (misdirection(group) < small_change) break;
     }
+    if (!(misdirection(group) < most_misdirection)) project(group);
     mend(group);
 }
 

@@ -62,6 +62,8 @@ class DirectSolver {
         Angular<D> given_spin{};
         Vec<D> wanted{};  ///< impulse of the joints on it along the directions as laid
         Angular<D> wanted_spin{};
+        Vec<D> free{};  ///< velocity without the joints
+        Angular<D> free_spin{};
         Vec<D> laid_velocity{};
         Angular<D> laid_spin{};  ///< with which the rows were laid
         Symmetric3<double> stiffness{};
@@ -107,6 +109,7 @@ class DirectSolver {
     void stiffen(const Group& group);
     void stiffen_by(const DirectJoint<D>& joint, const JointArms<D>& arms);
     void take_back(const Group& group);
+    void project(const Group& group);
     void re_aim(const Group& group);
     double misdirection(const Group& group) const;
     void set_effects(const DirectJoint<D>& joint);

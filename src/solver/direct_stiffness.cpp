@@ -141,6 +141,8 @@ void DirectSolver<D>::take_back(const Group& group) {
         m.motion.w = m.motion.w - m.given_spin;
         m.given = {};
         m.given_spin = {};
+        m.free = m.motion.v;
+        m.free_spin = m.motion.w;
     }
 }
 
