@@ -2,21 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace carom::detail {
 
 namespace {
 
-/// Compliance of the rows, in parts of their own: where rows say what others say as well, they share the
-/// impulse. That cannot be in a tree.
-constexpr double compliance_in_tree = 1e-10, compliance_in_loops = 1e-6;
-constexpr int free_rounds = 3;         ///< in which limits, motors and friction find which of them hold
-constexpr int most_rounds = 12;        ///< with those in which they only let go
-constexpr int most_sweeps = 4;         ///< of refinement
-constexpr double small_speed = 1e-10;  ///< m/s and rad/s
-constexpr int most_turns = 4;          ///< in which directions and velocities agree
-constexpr double small_change = 1e-5;  ///< rad and m in a sub-step
+constexpr int free_rounds = 3;             ///< in which limits, motors and friction find which of them hold
+constexpr int most_rounds = 12;            ///< with those in which they only let go
+constexpr int most_sweeps = 3;             ///< of refinement
+constexpr double small_speed = 1e-8;       ///< m/s and rad/s
+constexpr int most_turns = 8;              ///< in which directions and velocities agree
+constexpr double small_change = 1e-5;      ///< m and rad in a sub-step
+constexpr double most_misdirection = 0.1;  ///< beyond which they do not agree
 
 template <int D>
 Motion<D, double> widen(const Motion<D, float>& m) {
@@ -27,150 +24,7 @@ Weight<D, double> widen(const Weight<D, float>& w) {
     return {narrow<double>(w.mass), narrow<double>(w.inertia)};
 }
 
-template <int D>
-Wrench<D, double> operator*(double factor, const Wrench<D, double>& w) {
-    return {factor * w.force, w.on_a * factor, w.on_b * factor};
-}
-
-Vec<2> times(const Symmetric3<double>& m, const Vec<2>& v) {
-    return {m.xx * v.x + m.xy * v.y, m.xy * v.x + m.yy * v.y};
-}
-Vec<3> times(const Symmetric3<double>& m, const Vec<3>& v) { return m * v; }
-
-// With stiffness G beside a mass or inertia M, of which the inverse W is known: W' = (M + G)⁻¹, and W' M v
-// for what is left of a change v. Locked axes have no inverse; what is stiff about others is then left out
-// there.
-
-Symmetric3<double> inverse_with(const Vec<2>& w, const Symmetric3<double>& g) {
-    const double x = std::sqrt(w.x), y = std::sqrt(w.y);
-    const double xx = 1 + x * g.xx * x, yy = 1 + y * g.yy * y, xy = x * g.xy * y, d = xx * yy - xy * xy;
-    return {x * yy * x / d, y * xx * y / d, 0, -x * xy * y / d, 0, 0};
-}
-Symmetric3<double> inverse_with(const Vec<3>& w, const Symmetric3<double>& g) {
-    const double x = std::sqrt(w.x), y = std::sqrt(w.y), z = std::sqrt(w.z);
-    const Symmetric3<double> i = inverse(Symmetric3<double>{
-        1 + x * g.xx * x, 1 + y * g.yy * y, 1 + z * g.zz * z, x * g.xy * y, x * g.xz * z, y * g.yz * z});
-    return {x * i.xx * x, y * i.yy * y, z * i.zz * z, x * i.xy * y, x * i.xz * z, y * i.yz * z};
-}
-double inverse_with(double w, double g) { return w / (1 + w * g); }
-Symmetric3<double> inverse_with(const Symmetric3<double>& w, const Symmetric3<double>& g) {
-    if (trace(g) == 0) return w;
-    if (is_positive_definite(w)) return inverse(inverse(w) + g);
-    return w * (1 / (1 + trace(g) * trace(w)));
-}
-
-template <int D>
-Vec<D> share(const Vec<D>& w, const Symmetric3<double>& answer, const Vec<D>& v) {
-    Vec<D> impulse{};
-    for (int i = 0; i < D; ++i) impulse[i] = w[i] > 0 ? v[i] / w[i] : 0;
-    return times(answer, impulse);
-}
-double share(double w, double answer, double v) { return w > 0 ? answer / w * v : 0; }
-Vec3 share(const Symmetric3<double>& w, const Symmetric3<double>& answer, const Vec3& v) {
-    if (is_positive_definite(w)) return answer * (inverse(w) * v);
-    return trace(w) > 0 ? trace(answer) / trace(w) * v : Vec3{};
-}
-
-template <int D>
-void add(Wrench<D, double>& sum, const Wrench<D, double>& w) {
-    sum.force += w.force;
-    sum.on_a = sum.on_a + w.on_a;
-    sum.on_b = sum.on_b + w.on_b;
-}
-
 }  // namespace
-
-// ---- Structure ----
-
-template <int D>
-void DirectSolver<D>::set_step(double substep) {
-    const JointStep<float> step = joint_step(substep);
-    step_ = {substep, 1 / substep, step.share, step.most_way};
-}
-
-template <int D>
-void DirectSolver<D>::plan(const JointInput<D>& input, std::span<const std::uint32_t> joints,
-                           std::span<const std::uint32_t> group_starts) {
-    joints_.clear();
-    groups_.clear();
-    members_.clear();
-    ties_.clear();
-    for (std::size_t i = 0; i < group_starts.size(); ++i) {
-        const std::size_t end = i + 1 < group_starts.size() ? group_starts[i + 1] : joints.size();
-        add_group(input, joints.subspan(group_starts[i], end - group_starts[i]));
-    }
-    std::vector<std::uint8_t> sizes;
-    std::vector<NodePair> pairs;
-    for (const DirectJoint<D>& j : joints_) sizes.push_back(static_cast<std::uint8_t>(j.row_count()));
-    for (const Tie& tie : ties_) pairs.push_back({tie.row, tie.column});
-    matrix_.plan(sizes, pairs);
-    for (Tie& tie : ties_) tie.place = matrix_.place({tie.row, tie.column});
-    for (std::uint32_t k = 0; k < joints_.size(); ++k) joints_[k].first_row = matrix_.first_row(k);
-    rows_.assign(matrix_.rows(), {});
-    effects_.assign(matrix_.rows(), {});
-    laws_.assign(matrix_.rows(), {});
-    open_.assign(matrix_.rows(), 1);
-    constexpr std::size_t n = DirectJoint<D>::most_rows;
-    own_.assign(joints_.size() * n * n, 0);
-    arms_.assign(joints_.size(), {});
-    right_.assign(matrix_.rows(), 0);
-}
-
-template <int D>
-void DirectSolver<D>::add_group(const JointInput<D>& input, std::span<const std::uint32_t> joints) {
-    Group group;
-    group.first_joint = static_cast<std::uint32_t>(joints_.size());
-    group.first_body = static_cast<std::uint32_t>(members_.size());
-    std::map<std::uint32_t, std::vector<std::uint32_t>> joints_of;  // by slot, of bodies that can be pushed
-    std::map<std::uint32_t, std::uint32_t> member_of;
-    for (std::uint32_t i = 0; i < joints.size(); ++i) {
-        const JointRecord<D>& joint = input.joints[joints[i]];
-        for (const std::uint32_t slot : {input.slot_of(joint.body_a), input.slot_of(joint.body_b)}) {
-            if (member_of.emplace(slot, static_cast<std::uint32_t>(members_.size())).second)
-                members_.push_back({slot});
-            if (slot >= input.bodies.first_movable) joints_of[slot].push_back(i);
-        }
-    }
-    std::vector<NodePair> edges;
-    for (const auto& [slot, list] : joints_of) {
-        for (std::size_t p = 0; p < list.size(); ++p) {
-            for (std::size_t q = 0; q < p; ++q) {
-                if (list[p] != list[q]) edges.push_back({list[p], list[q]});
-            }
-        }
-    }
-    for (const std::uint32_t i : elimination_order(static_cast<std::uint32_t>(joints.size()), edges)) {
-        const JointRecord<D>& record = input.joints[joints[i]];
-        DirectJoint<D> joint;
-        joint.joint = joints[i];
-        joint.layout = record.layout;
-        joint.a = member_of[input.slot_of(record.body_a)];
-        joint.b = member_of[input.slot_of(record.body_b)];
-        joints_.push_back(joint);
-    }
-    group.last_joint = static_cast<std::uint32_t>(joints_.size());
-    group.last_body = static_cast<std::uint32_t>(members_.size());
-    group.first_tie = static_cast<std::uint32_t>(ties_.size());
-    std::vector<std::vector<NodePair>> by_body(members_.size() - group.first_body);  // joint, is it body a?
-    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
-        for (const bool is_a : {true, false}) {
-            const std::uint32_t body = is_a ? joints_[k].a : joints_[k].b;
-            if (members_[body].slot < input.bodies.first_movable) continue;
-            auto& list = by_body[body - group.first_body];
-            for (const NodePair& other : list) {
-                if (other.row != k) ties_.push_back({k, other.row, is_a, other.column != 0, 0});
-            }
-            list.push_back({k, is_a});
-        }
-    }
-    group.last_tie = static_cast<std::uint32_t>(ties_.size());
-    groups_.push_back(group);
-    // Each joint of a tree brings a body of its own along; those to what stands still count as one body.
-    const std::size_t still = group.last_body - group.first_body - joints_of.size();
-    const bool is_tree = joints.size() < joints_of.size() + std::min<std::size_t>(still, 1);
-    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k)
-        joints_[k].compliance = is_tree ? compliance_in_tree : compliance_in_loops;
-}
 
 // ---- A step ----
 
@@ -257,139 +111,6 @@ void DirectSolver<D>::lay(DirectJoint<D>& joint) {
             row.impulse = dot(row.middle.on_b, joint.across_impulse);
         }
     }
-}
-
-/// What a unit of impulse does to the bodies.
-template <int D>
-void DirectSolver<D>::set_effects(const DirectJoint<D>& joint) {
-    const Member &a = members_[joint.a], &b = members_[joint.b];
-    const std::span<Row> rows = rows_of(joint);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        const Side& w = rows[r].middle;
-        effects_[joint.first_row + r] = {times(a.answer, w.force), times(b.answer, w.force),
-                                         a.turn_answer * w.on_a, b.turn_answer * w.on_b};
-    }
-}
-
-/// How the forces of a joint change when its bodies turn and move within the sub-step, by the directions of
-/// its middle: for a force F at an arm r, half the length of the sub-step times ½ (r · F + |r| |F|) across r,
-/// which is the derivative where both are parallel, and never negative. A rod under tension is turned by its
-/// ends as well, which counts double, as each of them sees the other one stand still.
-template <int D>
-void DirectSolver<D>::stiffen_by(const DirectJoint<D>& joint, const JointArms<D>& arms) {
-    Member &a = members_[joint.a], &b = members_[joint.b];
-    const double half = 0.5 * step_.h;
-    const auto turn = [&](Member& m, const Vec<D>& arm, double by) {
-        const double squared = dot(arm, arm);
-        if (squared == 0) return;
-        if constexpr (D == 2) {
-            m.turn_stiffness += by;
-        } else {
-            m.turn_stiffness = m.turn_stiffness + (diagonal(by, by, by) - outer_square(arm) * (by / squared));
-        }
-    };
-    const auto load = [&](const Vec<D>& force, const Vec<D>& arm_a) {
-        const double size = length(force);
-        turn(a, arm_a, 0.5 * half * (length(arm_a) * size - dot(arm_a, force)));
-        turn(b, arms.b, 0.5 * half * (length(arms.b) * size + dot(arms.b, force)));
-    };
-    const std::span<const Row> rows = rows_of(joint);
-    Vec<D> force{};
-    for (int r = 0; r < joint.row_count(); ++r) {
-        const Row& row = rows[static_cast<std::size_t>(r)];
-        const int drive = r - joint.first_drive();
-        if (drive < 0 || joint.rows().drives[static_cast<std::size_t>(drive)] != DriveKind::stretch) {
-            force += row.impulse * row.middle.force;
-            continue;
-        }
-        load(row.impulse * row.middle.force, arms.a);
-        const double way = length(arms.gap);
-        if (!(row.impulse < 0 && way > 1e-6)) continue;
-        const double by = 2 * half * -row.impulse / way;
-        for (Member* m : {&a, &b}) {
-            const Vec<D>& n = row.middle.force;
-            if constexpr (D == 2) {
-                m->stiffness = m->stiffness +
-                               Symmetric3<double>{by * n.y * n.y, by * n.x * n.x, 0, -by * n.x * n.y, 0, 0};
-            } else {
-                m->stiffness = m->stiffness + (diagonal(by, by, by) - outer_square(n) * by);
-            }
-        }
-        turn(a, arms.a, by * dot(arms.a, arms.a));
-        turn(b, arms.b, by * dot(arms.b, arms.b));
-    }
-    load(force, arms.a + arms.gap);
-}
-
-/// How bodies answer to impulses, with the stiffness that their loads give them ("geometric stiffness",
-/// Tournier et al. 2015, of which each body keeps its own part, Andrews et al. 2017). It changes the way to
-/// the solution alone: rows are laid along the directions of the middle of the sub-step, which the new
-/// velocities say.
-template <int D>
-void DirectSolver<D>::stiffen(const Group& group) {
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        members_[i].stiffness = {};
-        members_[i].turn_stiffness = {};
-    }
-    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) stiffen_by(joints_[k], arms_[k]);
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        Member& m = members_[i];
-        m.answer = inverse_with(m.weight.mass, m.stiffness);
-        m.turn_answer = inverse_with(m.weight.inertia, m.turn_stiffness);
-    }
-}
-
-/// Takes back what the joints gave the bodies in the sub-step before. It was good to say where they go; but
-/// what is so stiff that the directions are not found would keep it, and be driven by it.
-template <int D>
-void DirectSolver<D>::take_back(const Group& group) {
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        Member& m = members_[i];
-        m.motion.v -= m.given;
-        m.motion.w = m.motion.w - m.given_spin;
-        m.given = {};
-        m.given_spin = {};
-    }
-}
-
-/// What the joints have given the bodies becomes what their impulses are along the directions as laid.
-template <int D>
-void DirectSolver<D>::re_aim(const Group& group) {
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        members_[i].wanted = {};
-        members_[i].wanted_spin = {};
-    }
-    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
-        Member &a = members_[joints_[k].a], &b = members_[joints_[k].b];
-        Wrench<D, double> w{};
-        for (const Row& row : rows_of(joints_[k])) add(w, row.impulse * row.middle);
-        a.wanted -= w.force;
-        a.wanted_spin = a.wanted_spin - w.on_a;
-        b.wanted += w.force;
-        b.wanted_spin = b.wanted_spin + w.on_b;
-    }
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        Member& m = members_[i];
-        const Vec<D> change = share(m.weight.mass, m.answer, each(m.weight.mass, m.wanted) - m.given);
-        const Angular<D> spin = share(m.weight.inertia, m.turn_answer,
-                                      Angular<D>(m.weight.inertia * m.wanted_spin - m.given_spin));
-        m.motion.v += change;
-        m.given += change;
-        m.motion.w = m.motion.w + spin;
-        m.given_spin = m.given_spin + spin;
-    }
-}
-
-/// Do the directions as laid differ from those that the velocities say now?
-template <int D>
-bool DirectSolver<D>::has_turned(const Group& group) const {
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        const Angular<D> change = members_[i].motion.w - members_[i].laid_spin;
-        const Vec<D> way = members_[i].motion.v - members_[i].laid_velocity;
-        const double squared = angular_dot(change, change) + dot(way, way);
-        if (step_.h * step_.h * squared > small_change * small_change) return true;
-    }
-    return false;
 }
 
 template <int D>
@@ -566,6 +287,30 @@ void DirectSolver<D>::solve_as_laid(const Group& group) {
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) keep_impulses(joints_[k]);
 }
 
+/// Where velocities and directions do not come to agree: from the velocities without the joints to the
+/// nearest that the rows allow, with impulses and speeds along the same directions. That takes energy away
+/// and never gives any.
+template <int D>
+void DirectSolver<D>::project(const Group& group) {
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        Member& m = members_[i];
+        m.motion.v = m.free;
+        m.motion.w = m.free_spin;
+        m.given = {};
+        m.given_spin = {};
+    }
+    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
+        DirectJoint<D>& joint = joints_[k];
+        joint.impulses = {};
+        joint.across_impulse = joint.rubbed = {};
+        lay<true>(joint);
+        for (Row& row : rows_of(joint)) row.end = row.middle;
+        arms_[k] = {};
+    }
+    stiffen(group);
+    solve_as_laid(group);
+}
+
 /// The velocities that are found turn the directions along which they were found; so it is done again.
 template <int D>
 void DirectSolver<D>::solve_group(const Group& group) {
@@ -582,8 +327,9 @@ void DirectSolver<D>::solve_group(const Group& group) {
         if (turn == 0) take_back(group);
         re_aim(group);
         solve_as_laid(group);
-        if (!has_turned(group)) break;
+        if (misdirection(group) < small_change) break;
     }
+    if (!(misdirection(group) < most_misdirection)) project(group);
     mend(group);
 }
 

@@ -11,6 +11,17 @@
 
 namespace carom::detail {
 
+template <int D>
+Wrench<D, double> operator*(double factor, const Wrench<D, double>& w) {
+    return {factor * w.force, w.on_a * factor, w.on_b * factor};
+}
+template <int D>
+void add(Wrench<D, double>& sum, const Wrench<D, double>& w) {
+    sum.force += w.force;
+    sum.on_a = sum.on_a + w.on_a;
+    sum.on_b = sum.on_b + w.on_b;
+}
+
 /// Joints that are solved at once. What hangs together by joints through bodies that can be pushed is a group
 /// with a matrix J M⁻¹ Jᵀ, which has a block for each joint and for each two joints of a body. It is
 /// factorised in each pass, in double precision. So the joints of a group agree, however long its chains are
@@ -51,6 +62,8 @@ class DirectSolver {
         Angular<D> given_spin{};
         Vec<D> wanted{};  ///< impulse of the joints on it along the directions as laid
         Angular<D> wanted_spin{};
+        Vec<D> free{};  ///< velocity without the joints
+        Angular<D> free_spin{};
         Vec<D> laid_velocity{};
         Angular<D> laid_spin{};  ///< with which the rows were laid
         Symmetric3<double> stiffness{};
@@ -96,8 +109,9 @@ class DirectSolver {
     void stiffen(const Group& group);
     void stiffen_by(const DirectJoint<D>& joint, const JointArms<D>& arms);
     void take_back(const Group& group);
+    void project(const Group& group);
     void re_aim(const Group& group);
-    bool has_turned(const Group& group) const;
+    double misdirection(const Group& group) const;
     void set_effects(const DirectJoint<D>& joint);
     void assemble(const Group& group);
     void weigh(std::uint32_t node);

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "solver/direct.hpp"
 #include "solver/prepare.hpp"
 
@@ -11,8 +13,11 @@ template <int D>
 bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, bool releasing) {
     RowLaw& old = laws_[row];
     if (releasing && law.is_firm() && !old.is_firm()) return false;
+    // Friction that slides turns a little with every round; that is followed without solving all again.
+    const double moved = std::fabs(old.given - law.given);
     const bool changed = old.open != law.open || old.softness != law.softness ||
-                         old.speed_wanted != law.speed_wanted || old.given != law.given;
+                         old.speed_wanted != law.speed_wanted ||
+                         moved > 0.02 * (std::fabs(old.given) + std::fabs(law.given));
     old = law;
     if (!law.open) set_impulse(joints_[node], row, law.given);
     return changed;

@@ -1,6 +1,7 @@
 #include "solver/joint_groups.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace carom::detail {
@@ -13,6 +14,18 @@ bool JointGroups<D>::plan(const JointInput<D>& input) {
     return !direct_.empty() || !before.empty();
 }
 
+namespace {
+
+/// Is there a range that it may leave?
+template <int D>
+bool is_limited(const JointRecord<D>& joint) {
+    return std::ranges::any_of(joint.drives, [](const DriveSettings& d) {
+        return d.low < d.high && (std::isfinite(d.low) || std::isfinite(d.high));
+    });
+}
+
+}  // namespace
+
 /// Returns whether all is as it was when it was last looked at.
 template <int D>
 bool JointGroups<D>::look(const JointInput<D>& input) {
@@ -23,7 +36,7 @@ bool JointGroups<D>::look(const JointInput<D>& input) {
     for (const std::uint32_t i : input.active) {
         const JointRecord<D>& joint = input.joints[i];
         seen_.push_back({i, joint.layout, input.slot_of(joint.body_a), input.slot_of(joint.body_b),
-                         inverse_mass(joint.body_a), inverse_mass(joint.body_b)});
+                         inverse_mass(joint.body_a), inverse_mass(joint.body_b), is_limited(joint)});
     }
     const bool same =
         method_ == input.method && first_movable_ == input.bodies.first_movable && seen_ == ties_;
@@ -64,7 +77,7 @@ void JointGroups<D>::group(const JointInput<D>& input) {
     }
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return root(i); });
+    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(root(i), i); });
     for (std::size_t begin = 0, end; begin < count; begin = end) {
         end = begin;
         while (end < count && root(order[end]) == root(order[begin])) ++end;
@@ -80,7 +93,10 @@ void JointGroups<D>::group(const JointInput<D>& input) {
 /// of which the factors would be filled in, are left to sweeps.
 template <int D>
 bool JointGroups<D>::is_hard(std::span<const std::uint32_t> group) {
-    constexpr double most_load = 24;  // masses of the lighter body
+    constexpr std::size_t small_net = 24;
+    constexpr std::size_t few = 4;
+    // A chain of ten equal links has 10. A ragdoll has 9, and sweeps do for it.
+    constexpr double most_load = 9.5;  // masses of the lighter body
     bodies_.clear();
     bool some_still = false;
     for (const std::uint32_t i : group) {
@@ -95,8 +111,17 @@ bool JointGroups<D>::is_hard(std::span<const std::uint32_t> group) {
     std::ranges::sort(bodies_, {}, &Hanging::slot);
     const auto doubles = std::ranges::unique(bodies_, {}, &Hanging::slot);
     bodies_.erase(doubles.begin(), doubles.end());
-    const std::size_t loops = group.size() + (some_still ? 0 : 1) - bodies_.size();
-    if (group.size() + (some_still ? 0 : 1) > bodies_.size() && loops > 1 + bodies_.size() / 8) return false;
+    const std::size_t whole = group.size() + (some_still ? 0 : 1);
+    const std::size_t loops = whole > bodies_.size() ? whole - bodies_.size() : 0;
+    if (loops > 1 + bodies_.size() / 8 && group.size() > small_net) return false;
+    // Sweeps do not come to agree about several joints that keep bodies from turning, and give them energy;
+    // and a blow at a limit leaves joints beside it torn apart for some steps.
+    const auto locks = [&](std::uint32_t i) {
+        return layouts<D>[ties_[i].layout].angular == AngularPart::locked;
+    };
+    if (group.size() > 2 && std::ranges::any_of(group, locks)) return true;
+    const auto is_limited = [&](std::uint32_t i) { return ties_[i].is_limited; };
+    if (group.size() > 1 && group.size() <= few && std::ranges::any_of(group, is_limited)) return true;
     return greatest_load(group, some_still) > most_load;
 }
 

@@ -26,6 +26,7 @@ class JointGroups {
     struct Tie {
         std::uint32_t joint = 0, layout = 0, a = 0, b = 0;
         double mass_a = 0, mass_b = 0;  ///< inverse
+        bool is_limited = false;
         friend bool operator==(const Tie&, const Tie&) = default;
     };
 

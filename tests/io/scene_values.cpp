@@ -66,6 +66,7 @@ TEST(SceneValues, defaults_are_those_of_the_contract) {
     EXPECT_EQ(data.world.substeps, 4);
     EXPECT_EQ(data.world.integrator, Integrator::semi_implicit_euler);
     EXPECT_EQ(data.world.impacts, Impacts::simultaneous);
+    EXPECT_EQ(data.world.joints, JointMethod::automatic);
     EXPECT_TRUE(data.world.sleep);
     EXPECT_TRUE(data.world.continuous);
     EXPECT_EQ(data.world.restitution_threshold, 1);
@@ -93,7 +94,7 @@ TEST(SceneValues, defaults_are_those_of_the_contract) {
 TEST(SceneValues, world) {
     const Scene scene = parse_scene(
         scene_text(2, R"("world": {"gravity": [1.5, -2.25], "step": 0.01, "substeps": 7, "integrator": "rk4",
-                         "impacts": "sequential", "sleep": false, "continuous": false,
+                         "impacts": "sequential", "joints": "direct", "sleep": false, "continuous": false,
                          "restitution_threshold": 0.25, "hit_speed": 3.5})"),
         "t");
     EXPECT_EQ(scene.step, 0.01);
@@ -102,6 +103,7 @@ TEST(SceneValues, world) {
     EXPECT_EQ(world.substeps, 7);
     EXPECT_EQ(world.integrator, Integrator::rk4);
     EXPECT_EQ(world.impacts, Impacts::sequential);
+    EXPECT_EQ(world.joints, JointMethod::direct);
     EXPECT_FALSE(world.sleep || world.continuous);
     EXPECT_EQ(world.restitution_threshold, 0.25);
     EXPECT_EQ(world.hit_speed, 3.5);
