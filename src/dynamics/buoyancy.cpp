@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/submerged.hpp"
 #include "math/dim.hpp"
@@ -47,14 +48,19 @@ double weight_of(const Buoyancy<D>& water, const Vec<D>& gravity) {
     return -water.density * dot(water.up, gravity);
 }
 
-template <int D>
-Load<D> lift(const Floating<D>& floating, std::uint32_t body, const Place<D>& place) {
-    Load<D> load;
+/// What the waters lift a body by at a place, after `visit(water, wetted part)`; nothing where it is dry.
+template <int D, class Visit>
+std::optional<Load<D>> lift(const Floating<D>& floating, std::uint32_t body, const Place<D>& place,
+                            const Visit& visit) {
+    std::optional<Load<D>> load;
     for (const Buoyancy<D>& water : floating.waters) {
         const Wetted<D> part = wetted(floating, body, place, water);
+        if (part.volume == 0) continue;
+        if (!load) load.emplace();
+        visit(water, part);
         const Vec<D> force = (part.volume * weight_of(water, floating.gravity)) * water.up;
-        load.force += force;
-        load.torque += cross(part.arm, force);
+        load->force += force;
+        load->torque += cross(part.arm, force);
     }
     return load;
 }
@@ -75,7 +81,7 @@ double cross_section_of(double volume, double whole_section) {
 template <int D>
 void add_drag(const Buoyancy<D>& water, const Wetted<D>& part, const BodyState<D>& state,
               const BodyMass<D>& mass, const Rotation<D>& rotation, double step, Load<D>& load) {
-    if (part.volume == 0 || (water.linear_drag == 0 && water.quadratic_drag == 0)) return;
+    if (water.linear_drag == 0 && water.quadratic_drag == 0) return;
     Angular<D> w = state.angular_velocity;
     const Angular<D> momentum = rotate_angular(rotation, mass.inertia * rotate_angular(inverse(rotation), w));
     const Vec<D> in_water = state.velocity - water.flow;
@@ -112,20 +118,23 @@ void add_buoyancy(const Floating<D>& floating, std::span<const std::uint32_t> li
         if (mass.inverse_mass == 0) continue;
         Place<D> place{state.position + 0.5 * step * state.velocity,
                        exp_rotation<D>(state.angular_velocity * (0.5 * step)) * state.rotation};
-        Load<D> load = lift(floating, i, place);
-        if (step > 0 && load.force != Vec<D>{}) {
+        if (step > 0) {
+            const auto first = lift(floating, i, place, [](const Buoyancy<D>&, const Wetted<D>&) {});
+            if (!first) continue;
             const Vec<D> pull =
-                free_components<D>(mass.locks, (loads[i].force + load.force) * mass.inverse_mass);
+                free_components<D>(mass.locks, (loads[i].force + first->force) * mass.inverse_mass);
             const Angular<D> turn =
-                world_inverse_inertia<D>(mass, place.rotation) * (loads[i].torque + load.torque);
+                world_inverse_inertia<D>(mass, place.rotation) * (loads[i].torque + first->torque);
             place.position += (step * step / 12) * pull;
             place.rotation = exp_rotation<D>(turn * (step * step / 12)) * place.rotation;
-            load = lift(floating, i, place);
         }
-        for (const Buoyancy<D>& water : floating.waters)
-            add_drag(water, wetted(floating, i, place, water), state, mass, place.rotation, step, load);
-        loads[i].force += load.force;
-        loads[i].torque += load.torque;
+        Load<D> drag;
+        const auto load = lift(floating, i, place, [&](const Buoyancy<D>& water, const Wetted<D>& part) {
+            add_drag(water, part, state, mass, place.rotation, step, drag);
+        });
+        if (!load) continue;
+        loads[i].force += load->force + drag.force;
+        loads[i].torque += load->torque + drag.torque;
     }
 }
 
