@@ -207,13 +207,13 @@ TEST(CarsInSpace, DriveTheCourseWithoutFlipping) {
             controls.brake = std::clamp(0.1 * (speed - wanted - 1), 0.0, 0.5);
             drive(world, car, controls, frame_time);
             upright = std::min(upright, rotate(world.rotation(car.chassis()), Vec3{0, 1, 0}).y);
-            if (way > 90 && way < 110) highest = std::max(highest, at.y);
+            if (way > 98.5 && way < 110) highest = std::max(highest, at.y);
             const Vec3 off = at - Course::point(way);
             ASSERT_LT(std::hypot(off.x, off.z), 5) << "at " << way << " m, front drive: " << front;
         }
         EXPECT_GT(way, Course::straight + 3.14159 * Course::radius + 59);
         EXPECT_GT(upright, 0.75);
-        EXPECT_GT(highest, 1.6);  // it has been in the air
+        EXPECT_GT(highest, 1.0);  // in the air: the ramp ended at 96 m, and the ground beyond it is at 0
         for (const JointId3 joint : car.joints()) EXPECT_LT(world.linear_error(joint), 2e-3);
     }
 }

@@ -71,7 +71,10 @@ TYPED_TEST(Masonry, AWallBreaksWhereItIsHit) {
             wall.push_back(world.add_body(brick));
         }
     }
-    const std::vector<JointId<D>> joints = glue<D>(world, wall, Mortar<D>{.strength = 1e7});
+    // The shot bends the wall by 8 MPa about its foot if it stops within a step: 15 kN s / (1/60 s) * 2 m on
+    // a section of 5 m x 0.5 m in space. It gives way, so it is less.
+    const double strength = D == 2 ? 1e7 : 2.5e6;
+    const std::vector<JointId<D>> joints = glue<D>(world, wall, Mortar<D>{.strength = strength});
     EXPECT_EQ(joints.size(), D == 2 ? 6u : 5u + 6 * 4 + 5 * 9);
     for (int i = 0; i < 60; ++i) world.step(test::frame_time);
     EXPECT_EQ(world.counts().joints, static_cast<int>(joints.size()));
