@@ -119,13 +119,15 @@ World<D> soup(std::uint64_t seed, bool driven, bool with_ground,
     return world;
 }
 
+std::uint64_t worlds(int own) { return static_cast<std::uint64_t>(trials(own)); }
+
 template <class T>
 class JointSoup : public testing::Test {};
 TYPED_TEST_SUITE(JointSoup, BothDimensions);
 
 TYPED_TEST(JointSoup, StaysFinite) {
     constexpr int D = TypeParam::value;
-    for (std::uint64_t seed = 0; seed < 150; ++seed) {
+    for (std::uint64_t seed = 0; seed < worlds(150); ++seed) {
         SCOPED_TRACE(seed);
         World<D> world = soup<D>(seed, true, seed % 2 == 0);
         for (int i = 0; i < 60; ++i) {
@@ -151,7 +153,7 @@ TYPED_TEST(JointSoup, StaysFiniteWhereAllIsSolvedDirectly) {
 /// some of it comes and goes; it does not grow.
 TYPED_TEST(JointSoup, GainsNoEnergy) {
     constexpr int D = TypeParam::value;
-    for (std::uint64_t seed = 1000; seed < 1150; ++seed) {
+    for (std::uint64_t seed = 1000; seed < 1000 + worlds(150); ++seed) {
         SCOPED_TRACE(seed);
         World<D> world = soup<D>(seed, false, false);
         const double start = world.energy().kinetic;
