@@ -18,7 +18,7 @@ constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
 /// What bounces may turn within a step, or be struck, and then strike what is near.
 template <int D>
 double least_margin(const ShapeRecord<D>& shape) {
-    return shape.definition->material.restitution > 0 ? 0.5 * speculative_distance : 0;
+    return shape.definition->material.restitution >= lively_restitution ? 0.5 * speculative_distance : 0;
 }
 
 template <int D>

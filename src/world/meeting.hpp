@@ -13,6 +13,10 @@ namespace carom::detail {
 /// together without overlap.
 constexpr double speculative_distance = 0.02;
 
+/// From this restitution on, what is struck within a step is followed to what it strikes in the same step.
+/// Blows that bounce less are not passed on far, and a crowd of dull things should not pay for that.
+constexpr double lively_restitution = 0.3;
+
 /// Speed of the body's outermost point about its centre of mass.
 template <int D>
 double turning_speed(const BodyState<D>& s, const BodyMass<D>& m) {

@@ -104,7 +104,8 @@ bool WorldState<D>::may_be_struck(const ContactRecord<D>& c) const {
         const ShapeKind kind = shapes[shape].shape.kind;
         return kind == ShapeKind::ball || kind == ShapeKind::plane;
     };
-    return c.restitution > 0 && definition.continuous && is_simple(c.shape_a) && is_simple(c.shape_b);
+    return c.restitution >= static_cast<float>(lively_restitution) && definition.continuous &&
+           is_simple(c.shape_a) && is_simple(c.shape_b);
 }
 
 /// One of the bodies may be struck by another within the step and then come here.
