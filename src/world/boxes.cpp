@@ -133,14 +133,14 @@ void WorldState<D>::refresh_boxes(double dt) {
             const bool is_ball = shape.kind == ShapeKind::ball;
             const double arm = is_ball ? length(shape.a - masses[body].center) : masses[body].radius;
             const double turning = std::min(spin * dt, 2.0) * arm;
-            const double bouncing = least_margin(shapes[id.index]) > 0 ? length(way) : 0;
+            const double to_strike = least_margin(shapes[id.index]);
+            const double bouncing = to_strike > 0 ? length(way) : 0;
             const Aabb<D> swept = grown(tight, turning + falling + bouncing, way);
             if (contains(fat_boxes[id.index], swept)) continue;
             const Vec<D> size = tight.upper - tight.lower;
             double smallest = size.x;
             for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
-            const double margin =
-                std::max(std::min(box_margin, margin_share * smallest), least_margin(shapes[id.index]));
+            const double margin = std::max(std::min(box_margin, margin_share * smallest), to_strike);
             fat_boxes[id.index] = grown(swept, margin, Vec<D>{});
             mark_moved(id.index);
             new_leaves.push_back(shapes[id.index].leaf);

@@ -7,8 +7,6 @@
 
 namespace carom::detail {
 
-namespace {}  // namespace
-
 template <int D>
 ShapePair<D> WorldState<D>::names(std::uint32_t shape_a, std::uint32_t shape_b) const {
     return {body_slots.template id<BodyId<D>>(shapes[shape_a].body),
