@@ -22,6 +22,7 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.types.emplace_back();
         w.infos.emplace_back();
         w.applied.emplace_back();
+        w.only_shape.emplace_back();
         w.tree_of.push_back(of_fixed);
         w.moving.push_back(stands_still);
         w.place.emplace_back();
@@ -33,6 +34,7 @@ std::uint32_t new_body_place(WorldState<D>& w) {
     w.masses[i] = {};
     w.infos[i] = {};
     w.applied[i] = {};
+    w.only_shape[i] = w.no_shape;
     return i;
 }
 
@@ -67,6 +69,7 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeRecord<D>&
     if (i == w.shapes.size()) {
         w.shapes.emplace_back();
         w.company.emplace_back();
+        w.extents.emplace_back();
         w.fat_boxes.emplace_back();
         w.has_new_box.push_back(0);
         w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
@@ -158,6 +161,7 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     m = plan.mass;
     if (is_alike) {
         s.position += rotate(s.rotation, m.center);  // from the frame to the centre of mass
+        w.measure_extents(i);
     } else {
         w.update_mass(i);  // does the same
         plan.mass = m;
