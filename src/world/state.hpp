@@ -251,7 +251,8 @@ struct WorldState {
     void take_loose();
     void follow_bodies();
     std::optional<Carrying<D>> carrying(std::uint32_t contact);
-    bool can_stay_apart(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    bool stays_apart(std::uint32_t contact);
+    LanePair<D> lane_pair(const ContactRecord<D>& contact);
     void leave_apart(std::uint32_t contact);
     void place_contacts();
     ContactRecord<D> current(std::uint32_t contact) const;
