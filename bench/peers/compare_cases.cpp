@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "carom/error.hpp"
 #include "compare.hpp"
 #include "engine.hpp"
+#include "refusals.hpp"
 #include "subject.hpp"
 #include "validate/case.hpp"
 
@@ -15,6 +17,18 @@ namespace {
 
 using app::Case;
 using app::Result;
+
+/// Takes out what was not measured: results of a dimension that the engine does not have; and, where a world
+/// of the case held what it does not have, those that are exactly right or wrong, as a largest or least value
+/// is that passed over what is not a number.
+void take_out_unknown(std::vector<Result>& results, const subject::EngineKind& engine) {
+    for (Result& r : results) {
+        const int dimension = r.what.starts_with("2D") ? 2 : 3;
+        const bool exact = r.error == 0 || r.error == 1;
+        if (!engine.has(dimension) || (exact && subject::refused(dimension)))
+            r.error = std::numeric_limits<double>::quiet_NaN();
+    }
+}
 
 /// What an engine made of one result.
 std::string cell(const Result& result) {
@@ -44,8 +58,10 @@ void compare_cases(const CompareOptions& options) {
         std::vector<std::vector<Result>> results;
         for (const auto& engine : subject::engines()) {
             subject::put_to_the_test(engine);
+            subject::forget_refusals();
             try {
                 results.push_back(c.measure());
+                take_out_unknown(results.back(), engine);
             } catch (const Unsupported&) {
                 results.emplace_back();
             } catch (const Error&) {  // of places that are not a number

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "carom/error.hpp"
+#include "refusals.hpp"
 
 namespace carom::subject {
 namespace {
@@ -13,6 +14,7 @@ constexpr EngineKind kinds[] = {{.name = "Carom", .is_carom = true},
                                 {.name = "Bullet", .make_3 = peers::make_bullet},
                                 {.name = "ODE", .make_3 = peers::make_ode}};
 const EngineKind* current = &kinds[0];
+bool refused_in[2] = {};  // by dimension, from 2
 
 bool finite(double x) { return std::isfinite(x); }
 bool finite(const Vec2& v) { return std::isfinite(v.x + v.y); }
@@ -22,6 +24,8 @@ bool finite(const Vec3& v) { return std::isfinite(v.x + v.y + v.z); }
 
 std::span<const EngineKind> engines() { return kinds; }
 void put_to_the_test(const EngineKind& engine) { current = &engine; }
+bool refused(int dimension) { return refused_in[dimension - 2]; }
+void forget_refusals() { refused_in[0] = refused_in[1] = false; }
 
 template <int D>
 World<D>::World(const WorldDefinition<D>& definition) : Base(definition) {
@@ -39,7 +43,8 @@ World<D>::World(const WorldDefinition<D>& definition) : Base(definition) {
         engine_ = current->make_2(definition);
     else
         engine_ = current->make_3(definition);
-    if (definition.integrator != Integrator::semi_implicit_euler) refusal_ = "a choice of integrators";
+    if (definition.integrator != Integrator::semi_implicit_euler)
+        attempt([] { throw peers::Unsupported("a choice of integrators"); });
 }
 
 template <int D>
@@ -49,6 +54,7 @@ void World<D>::attempt(const std::function<void()>& action) {
         action();
     } catch (const peers::Unsupported& unsupported) {
         refusal_ = unsupported.what();
+        refused_in[D - 2] = true;
     }
 }
 
