@@ -116,7 +116,7 @@ Nearest3 exactly(const Pair3& pair, const Gap3& likely, double extent) {
 
 Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
     const double extent =
-        is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
+        std::min(core_extent(pair.a) + core_radius(pair.a), core_extent(pair.b) + core_radius(pair.b));
     const Candidates likely = likely_directions(pair);
     if (likely.widest().distance > search.limit) return gap_along(pair, likely.widest().normal);
     return search.steady ? nearly(pair, search, likely, extent) : exactly(pair, likely.widest(), extent);
