@@ -31,6 +31,8 @@ struct BlockSpan {
     const std::uint32_t* b = nullptr;       ///< slots of the bodies, one a lane
     const std::uint32_t* body_a = nullptr;  ///< their indices in the world
     const std::uint32_t* body_b = nullptr;
+    const std::uint32_t* shape_a = nullptr;  ///< in `LaneShapes`
+    const std::uint32_t* shape_b = nullptr;
     std::uint8_t* traits = nullptr;
     std::uint32_t* found = nullptr;  ///< a bit a lane, written by the passes that look for something
     std::size_t blocks = 0;
@@ -60,8 +62,9 @@ struct Passes {
     int width;
 
     // Over contacts.
-    /// Carries the points along with the bodies, and finds the contacts for which that does not do.
-    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, float reach);
+    /// Carries the points along with the bodies; makes the manifolds anew for which that does not do, as far
+    /// as their shapes are among those `for_lanes`; and finds the contacts that are left.
+    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, const float* for_lanes, float reach);
     /// Finds the pairs that may touch.
     void (*find_near)(const ApartSpan&, const PoseView<D>&, const ApartLimits<float>&);
     /// Effective masses; applies the impulses that are kept; finds the contacts that have none.

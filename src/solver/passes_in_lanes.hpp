@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/passes.hpp"
+#include "solver/remake.hpp"
 
 /// The passes written out for a lane type. Included by one source file for each width, which is compiled for
 /// the instructions that the width needs. `flatten` puts all arithmetic into the loop, so that what is held
@@ -38,13 +39,24 @@ struct PassesIn {
         }
     }
 
-    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, float reach) {
+    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, const float* for_lanes,
+                        float reach) {
         Rows* rows = reinterpret_cast<Rows*>(span.rows);
-        const Marks* marks = reinterpret_cast<const Marks*>(span.marks);
+        Marks* marks = reinterpret_cast<Marks*>(span.marks);
         for (std::size_t k = 0; k < span.blocks; ++k) {
             const Pose<D, F> a = gather_pose<F>(poses, span.body_a + k * width),
                              b = gather_pose<F>(poses, span.body_b + k * width);
-            span.found[k] = bits_of(detail::refresh(rows[k], marks[k], a, b, F(reach)));
+            auto found = detail::refresh(rows[k], marks[k], a, b, F(reach));
+            if constexpr (D == 2) {
+                const auto wanted = both(found, marks[k].can_be_remade > F(0));
+                if (any(wanted)) {
+                    LaneOutline<F> of_a, of_b;
+                    gather_outline(for_lanes, span.shape_a + k * width, of_a);
+                    gather_outline(for_lanes, span.shape_b + k * width, of_b);
+                    found = both(found, !remake(rows[k], marks[k], a, b, of_a, of_b, wanted, F(reach)));
+                }
+            }
+            span.found[k] = bits_of(found);
         }
     }
 

@@ -109,6 +109,7 @@ void drop_shape(WorldState<D>& w, ShapeId<D> id) {
     w.remove_contacts_of_shape(id.index);
     w.remove_visits_of(id.index);
     w.remove_leaf(id.index);
+    w.lane_shapes.forget(id.index);
     w.shape_slots.release(id.index);
 }
 

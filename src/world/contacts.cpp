@@ -104,6 +104,7 @@ void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
         stop_carrying(contact);
         caches[contact].forget();
     });
+    for (const ShapeId<D>& shape : infos[body].shapes) lane_shapes.forget(shape.index);
 }
 
 /// The contact is to be looked at, in this step or the next. From then on its record is up to date.
@@ -154,12 +155,18 @@ void WorldState<D>::take_loose() {
     }
 }
 
-/// What is known of the contact now.
+/// What is known of the contact now, and in `cache` of its manifold.
+template <int D>
+ContactRecord<D> WorldState<D>::current(std::uint32_t contact, ContactCache<D>& cache) const {
+    ContactRecord<D> c = contacts[contact];
+    cache = caches[contact];
+    if (c.place) solver.read(cache, c);
+    return c;
+}
 template <int D>
 ContactRecord<D> WorldState<D>::current(std::uint32_t contact) const {
-    ContactRecord<D> c = contacts[contact];
-    if (c.place) solver.read(caches[contact], c);
-    return c;
+    ContactCache<D> unused;
+    return current(contact, unused);
 }
 
 /// The solver is told which bodies move. Contacts of those that began to are looked at from now on.
@@ -182,13 +189,26 @@ void WorldState<D>::follow_bodies() {
     }
 }
 
-/// Does the contact need nothing but to be carried along with its bodies? Not where the manifold is made anew
-/// in each step, where several fixed shapes may be one surface, and where a sleeper may have to be woken.
+/// How the solver keeps the contact up to date with its bodies. Nothing where the manifold has to be made
+/// anew in each step and lanes cannot do that, where several fixed shapes may be one surface, and where a
+/// sleeper may have to be woken. On what is fixed a surface has rights (`lay_on_fixed_face`) that lanes know
+/// nothing of, and neither do they of what may be struck.
 template <int D>
-bool WorldState<D>::can_be_carried(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
-    if (!definition.continuous || cache.way < 0 || c.special) return false;
-    if (c.on_fixed) return fixed_contacts_of[mover(c)] == 1;
-    return moving[c.body_a] != stands_still && moving[c.body_b] != stands_still;
+std::optional<Carrying<D>> WorldState<D>::carrying(std::uint32_t contact) {
+    const ContactRecord<D>& c = contacts[contact];
+    Carrying<D> result{caches[contact]};
+    if (!definition.continuous || c.special) return std::nullopt;
+    if (c.on_fixed) {
+        if (fixed_contacts_of[mover(c)] != 1) return std::nullopt;
+    } else {
+        if (moving[c.body_a] == stands_still || moving[c.body_b] == stands_still) return std::nullopt;
+        if (!may_be_struck(c)) {
+            result.shape_a = lane_shapes.find(c.shape_a, shapes[c.shape_a].shape, masses[c.body_a]);
+            result.shape_b = lane_shapes.find(c.shape_b, shapes[c.shape_b].shape, masses[c.body_b]);
+        }
+    }
+    if (result.cache.way < 0 && !result.can_be_remade()) return std::nullopt;
+    return result;
 }
 
 /// Does nothing have to be known of the contact until its bodies have come nearer? The cache has to tell of a
@@ -214,8 +234,8 @@ void WorldState<D>::place_contacts() {
         if (!any_moves(c.body_a, c.body_b)) continue;
         const bool pushes =
             c.count > 0 && (moving[c.body_a] == moves_freely || moving[c.body_b] == moves_freely);
-        const bool carried = pushes && can_be_carried(c, caches[i]);
-        if (pushes && c.place) solver.write(c, carried ? &caches[i] : nullptr);
+        const auto carried = pushes ? carrying(i) : std::nullopt;
+        if (pushes && c.place) solver.write(c, carried ? &*carried : nullptr);
         if (pushes && !c.place) to_place.push_back(i);
         if (!pushes && c.place) leave_solver(i);
         if (carried) continue;
@@ -231,25 +251,27 @@ void WorldState<D>::place_contacts() {
     std::ranges::sort(to_place);
     for (const std::uint32_t i : to_place) {
         ContactRecord<D>& c = contacts[i];
-        solver.add(i, c, can_be_carried(c, caches[i]) ? &caches[i] : nullptr);
+        const auto carried = carrying(i);
+        solver.add(i, c, carried ? &*carried : nullptr);
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                                            \
-    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const;         \
-    template void WorldState<D>::add_contact(const PairKey&);                           \
-    template void WorldState<D>::part_from_others();                                    \
-    template void WorldState<D>::remove_picked_contacts();                              \
-    template void WorldState<D>::remove_contacts_of(std::uint32_t);                     \
-    template void WorldState<D>::remove_contacts_between(std::uint32_t, std::uint32_t); \
-    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);               \
-    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                    \
-    template void WorldState<D>::loosen(std::uint32_t);                                 \
-    template void WorldState<D>::stop_carrying(std::uint32_t);                          \
-    template void WorldState<D>::leave_apart(std::uint32_t);                            \
-    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;              \
-    template void WorldState<D>::take_loose();                                          \
-    template void WorldState<D>::follow_bodies();                                       \
+#define CAROM_INSTANTIATE(D)                                                                 \
+    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const;              \
+    template void WorldState<D>::add_contact(const PairKey&);                                \
+    template void WorldState<D>::part_from_others();                                         \
+    template void WorldState<D>::remove_picked_contacts();                                   \
+    template void WorldState<D>::remove_contacts_of(std::uint32_t);                          \
+    template void WorldState<D>::remove_contacts_between(std::uint32_t, std::uint32_t);      \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                    \
+    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                         \
+    template void WorldState<D>::loosen(std::uint32_t);                                      \
+    template void WorldState<D>::stop_carrying(std::uint32_t);                               \
+    template void WorldState<D>::leave_apart(std::uint32_t);                                 \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;                   \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t, ContactCache<D>&) const; \
+    template void WorldState<D>::take_loose();                                               \
+    template void WorldState<D>::follow_bodies();                                            \
     template void WorldState<D>::place_contacts();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

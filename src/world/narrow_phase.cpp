@@ -168,9 +168,10 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
 template <int D>
 void WorldState<D>::collide(double dt) {
     list_patches();
-    solver.refresh(states, static_cast<float>(speculative_distance), scheduler.get(), [&](std::uint32_t i) {
-        if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
-    });
+    solver.refresh(states, lane_shapes, static_cast<float>(speculative_distance), scheduler.get(),
+                   [&](std::uint32_t i) {
+                       if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
+                   });
     const ApartLimits<float> limits{static_cast<float>(speculative_distance),
                                     static_cast<float>(0.5 * speculative_distance), static_cast<float>(dt),
                                     static_cast<float>(length(definition.gravity) * dt * dt)};
