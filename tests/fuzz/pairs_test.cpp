@@ -91,8 +91,12 @@ TEST(Fuzz, cases_that_were_wrong_are_right) {
                                   {2, 6, 144},
                                   {3, 3, 487},
                                   {3, 3, 564},
-                                  {3, 5, 42}})
+                                  {3, 5, 42},
+                                  {6, 6, 871},
+                                  {6, 6, 4295}})
         EXPECT_EQ(look_at_case<3>(a, b, n).fault, "") << a << ", " << b << ", " << n;
+    for (const std::uint64_t n : {3258u, 5158u, 5383u, 6709u})
+        EXPECT_EQ(look_at_ground_case<3>(5, n).fault, "") << "on ground, " << n;
 }
 
 TEST(Fuzz, pairs_in_the_plane_agree_with_the_oracles) { look_at_pairs<2>(); }

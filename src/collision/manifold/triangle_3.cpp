@@ -307,8 +307,9 @@ Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const T
         if (found.distance > limit) return apart(found);
         if (triangle.looks_back(found.normal)) return {};
         patch = contact_patch(pair, found, reach);
+        if (triangle.looks_back(patch->normal)) patch = contact_point(pair, found, reach);
     }
-    return triangle.looks_back(patch->normal) ? Manifold<3>{} : moved(*patch, placed);
+    return moved(*patch, placed);
 }
 
 template <>
