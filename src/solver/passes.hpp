@@ -6,6 +6,7 @@
 #include "core/crew.hpp"
 #include "solver/apart.hpp"
 #include "solver/body_records.hpp"
+#include "solver/body_source.hpp"
 #include "solver/drive.hpp"
 #include "solver/marks.hpp"
 #include "solver/prepare.hpp"
@@ -88,6 +89,8 @@ struct Passes {
     void (*touch)(const BlockSpan<D>&);
 
     // Over bodies.
+    /// Fills records and drives from the bodies' states.
+    void (*load)(const BodySpan<D>&, const BodySource<D>&);
     /// Takes the velocities as what the kept impulses make, and leaves what `look_ahead` wants.
     void (*begin_warm)(const BodySpan<D>&, float h);
     /// Puts the velocities of the start back, ready for the first sub-step.

@@ -166,6 +166,19 @@ struct PassesIn {
         }
     }
 
+    static void load(const BodySpan<D>& span, const BodySource<D>& source) {
+        Drive<D, F>* drives = reinterpret_cast<Drive<D, F>*>(span.drives);
+        std::uint32_t slots[width];
+        for (std::size_t k = span.blocks.begin; k < span.blocks.end; ++k) {
+            for (int lane = 0; lane < width; ++lane)
+                slots[lane] = static_cast<std::uint32_t>(k * width + lane);
+            const auto wanted = load_lanes<F>(source.present + k * width) > F(0.5f);
+            Body<D, F> body;
+            take_up(gather_plain<F>(source, source.bodies + k * width), wanted, body, drives[k]);
+            write_record(span.view, slots, body);
+        }
+    }
+
     static void begin_warm(const BodySpan<D>& span, float h) {
         each_body(span, true, true, [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
             detail::begin_warm(m, d, F(h));
@@ -216,6 +229,7 @@ struct PassesIn {
                                    find_pushing,
                                    tally,
                                    touch,
+                                   load,
                                    begin_warm,
                                    begin,
                                    integrate_velocities,

@@ -177,6 +177,7 @@ void WorldState<D>::follow_bodies() {
         leave_solver(i);
     });
     if (!changed) return;
+    joints_are_listed = false;
     for (std::size_t k = apart.size(); k-- > 0;) {
         const auto i = static_cast<std::uint32_t>(k);
         if (solver.changed(apart.body_a(i)) || solver.changed(apart.body_b(i))) loosen(apart.contact(i));
