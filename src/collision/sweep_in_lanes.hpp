@@ -24,7 +24,7 @@ struct SweepIn {
             for (int i = 1; i < D; ++i) {
                 const auto above = load_lanes<F>(columns.lower[i] + first) > upper[i];
                 const auto below = lower[i] > load_lanes<F>(columns.upper[i] + first);
-                apart = apart | above | below;
+                apart = either(apart, either(above, below));
             }
             for (std::uint32_t bits = all & ~bits_of(apart); bits != 0; bits &= bits - 1)
                 *next++ = first + static_cast<std::uint32_t>(__builtin_ctz(bits));

@@ -115,7 +115,7 @@ class Lanes {
     struct Mask {
         hn::Mask<Tag> m;
         friend Mask both(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
-        friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
+        friend Mask either(Mask a, Mask b) { return {hn::Or(a.m, b.m)}; }
         friend Mask operator!(Mask a) { return {hn::Not(a.m)}; }
     };
 

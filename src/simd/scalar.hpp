@@ -46,6 +46,7 @@ inline double minimum(double a, double b) { return a < b ? a : b; }
 inline double square_root(double a) { return std::sqrt(a); }
 inline bool any(bool mask) { return mask; }
 inline bool both(bool a, bool b) { return a && b; }
+inline bool either(bool a, bool b) { return a || b; }
 inline std::uint32_t bits_of(bool mask) { return mask; }
 
 /// Reads four floats that lie side by side at `base + index[lane] · stride` for every lane.

@@ -1,5 +1,7 @@
 #include "solver/contact_store.hpp"
 
+#include <cmath>
+
 #include "solver/prepare.hpp"
 #include "solver/split_pose.hpp"
 
@@ -14,7 +16,22 @@ struct MarkFields {
     static std::size_t way() { return field_of(model, model.way_squared); }
     static std::size_t restitution() { return field_of(model, model.restitution); }
     static std::size_t touching() { return field_of(model, model.touching); }
+    static std::size_t can_be_remade() { return field_of(model, model.can_be_remade); }
+    static std::size_t is_newer() { return field_of(model, model.is_newer); }
 };
+
+/// Where a point was whose place on the bodies is not known: it is found again by its feature alone.
+template <int D>
+Vec<D, float> nowhere_near() {
+    Vec<D, float> place;
+    place.x = 1e6f;
+    return place;
+}
+
+float lane_feature(std::uint32_t feature) {
+    constexpr std::uint32_t first_inexact = 1u << 24;
+    return feature < first_inexact ? static_cast<float>(feature) : -1.0f;
+}
 
 template <int D>
 ContactMarks<D, float> marks_of(const ContactCache<D>& cache) {
@@ -30,10 +47,34 @@ ContactMarks<D, float> marks_of(const ContactCache<D>& cache) {
         marks.points[k].on_a = there ? narrow<float>(from.on_a) : Vec<D, float>{};
         marks.points[k].on_b = there ? narrow<float>(from.on_a - cache.pose.position) : Vec<D, float>{};
         marks.points[k].separation = there ? from.separation : no_separation;
+        marks.points[k].feature = lane_feature(from.feature);
     }
-    marks.way_squared = cache.way * cache.way;
+    marks.way_squared = cache.way < 0 ? -1 : cache.way * cache.way;
     marks.turn_squared = cache.turn * cache.turn;
     return marks;
+}
+
+/// What the lanes made anew, the points in the order in which they are there.
+template <int D>
+ContactCache<D> cache_of(const ContactMarks<D, float>& marks, float roundness_a, float roundness_b) {
+    ContactCache<D> cache;
+    cache.pose = pose_of(marks.place, marks.place_rest, marks.turn, marks.turn_rest);
+    const bool of_b = marks.is_of_b != 0;
+    cache.normal =
+        of_b ? narrow<float>(rotate(cache.pose.rotation, narrow<double>(marks.normal))) : marks.normal;
+    cache.normal_of = of_b ? NormalOf::second : NormalOf::first;
+    for (const auto& mark : marks.points) {
+        auto& p = cache.points[cache.count++];
+        p.on_a = narrow<double>(mark.on_a);
+        p.on_b = unrotate(cache.pose.rotation, p.on_a - cache.pose.position);
+        p.separation = mark.separation;
+        p.feature = static_cast<std::uint32_t>(mark.feature);
+    }
+    cache.roundness_a = roundness_a;
+    cache.roundness_b = roundness_b;
+    cache.way = marks.way_squared < 0 ? -1 : std::sqrt(marks.way_squared);
+    cache.turn = std::sqrt(marks.turn_squared);
+    return cache;
 }
 
 /// All rows but the points.
@@ -86,6 +127,8 @@ std::uint32_t ContactStore<D>::push(std::uint32_t contact, const BodyPair& bodie
         b_.resize(lanes, nobody);
         body_a_.resize(lanes, 0);
         body_b_.resize(lanes, 0);
+        shape_a_.resize(lanes, LaneShapes<D>::none);
+        shape_b_.resize(lanes, LaneShapes<D>::none);
         contact_.resize(lanes, none);
         traits_.push_back(0);
         found_.push_back(0);
@@ -112,6 +155,8 @@ std::uint32_t ContactStore<D>::remove(std::uint32_t index, std::uint32_t first_m
         b_[index] = b_[last];
         body_a_[index] = body_a_[last];
         body_b_[index] = body_b_[last];
+        shape_a_[index] = shape_a_[last];
+        shape_b_[index] = shape_b_[last];
         contact_[index] = moved;
         traits_[index / width()] |= traits_[last / width()];
         mark_fixed(index / width(), first_movable);
@@ -121,6 +166,8 @@ std::uint32_t ContactStore<D>::remove(std::uint32_t index, std::uint32_t first_m
         b_.resize(last);
         body_a_.resize(last);
         body_b_.resize(last);
+        shape_a_.resize(last);
+        shape_b_.resize(last);
         contact_.resize(last);
         traits_.pop_back();
         found_.pop_back();
@@ -139,6 +186,7 @@ void ContactStore<D>::clear(std::uint32_t index) {
     marks_.set(index, marks);
     a_[index] = b_[index] = nobody;
     body_a_[index] = body_b_[index] = 0;
+    shape_a_[index] = shape_b_[index] = LaneShapes<D>::none;
     contact_[index] = none;
 }
 
@@ -153,20 +201,29 @@ void ContactStore<D>::mark_fixed(std::size_t block, std::uint32_t first_movable)
 
 template <int D>
 void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
-                            const ContactCache<D>* cache) {
+                            const Carrying<D>* carrying) {
     Rows rows = rows_of(record);
     Marks marks;
-    if (cache) {
-        marks = marks_of(*cache);
+    if (carrying && carrying->cache.count > 0) {
+        const ContactCache<D>& cache = carrying->cache;
+        marks = marks_of(cache);
         int next = 0;  // the record has those of the cache's points that are within reach, in their order
-        for (int k = 0; k < cache->count && next < record.count; ++k) {
-            if (record.points[next].feature == cache->points[k].feature)
+        for (int k = 0; k < cache.count && next < record.count; ++k) {
+            if (record.points[next].feature == cache.points[k].feature)
                 set_point(rows.points[k], record.points[next++]);
         }
     } else {
         marks.way_squared = -1;
-        for (int k = 0; k < record.count; ++k) set_point(rows.points[k], record.points[k]);
+        for (int k = 0; k < record.count; ++k) {
+            set_point(rows.points[k], record.points[k]);
+            marks.points[k].on_a = marks.points[k].on_b = nowhere_near<D>();
+            marks.points[k].feature = lane_feature(record.points[k].feature);
+        }
     }
+    const LanePair<D> shapes = carrying ? carrying->shapes : LanePair<D>{};
+    marks.can_be_remade = shapes ? 1.0f : 0.0f;
+    shape_a_[index] = shapes.a;
+    shape_b_[index] = shapes.b;
     marks.restitution = record.restitution;
     marks.touching = record.touching ? 1.0f : 0.0f;
     rows_.set(index, rows);
@@ -180,16 +237,17 @@ void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
 }
 
 template <int D>
-void ContactStore<D>::read(std::uint32_t index, const ContactCache<D>& cache,
-                           ContactRecord<D>& record) const {
+void ContactStore<D>::read(std::uint32_t index, ContactCache<D>& cache, ContactRecord<D>& record) const {
     const Rows rows = rows_.get(index);
+    if (marks_.at(index, MarkFields<D>::is_newer()) != 0)
+        cache = cache_of(marks_.get(index), rows.roundness_a, rows.roundness_b);
     record.touching = marks_.at(index, MarkFields<D>::touching()) != 0;
     record.normal = rows.normal;
     record.friction_impulse = along_tangents(rows, rows.friction_impulse);
     record.total_friction = along_tangents(rows, rows.total_friction);
     record.twist_impulse = rows.twist_impulse;
     record.spin_impulse = rows.rolling_impulse;
-    const bool carried = is_carried(index);
+    const bool carried = cache.count > 0 && is_carried(index);
     const int count = carried ? cache.count : record.count;
     if (carried) record.count = 0;
     for (int k = 0; k < count; ++k) {
@@ -207,7 +265,8 @@ void ContactStore<D>::read(std::uint32_t index, const ContactCache<D>& cache,
 
 template <int D>
 bool ContactStore<D>::is_carried(std::uint32_t index) const {
-    return marks_.at(index, MarkFields<D>::way()) >= 0;
+    return marks_.at(index, MarkFields<D>::way()) >= 0 ||
+           marks_.at(index, MarkFields<D>::can_be_remade()) != 0;
 }
 
 template <int D>
@@ -224,6 +283,8 @@ BlockSpan<D> ContactStore<D>::span(std::size_t first, std::size_t count) {
             b_.data() + lane,
             body_a_.data() + lane,
             body_b_.data() + lane,
+            shape_a_.data() + lane,
+            shape_b_.data() + lane,
             traits_.data() + first,
             found_.data() + first,
             count};

@@ -5,6 +5,7 @@
 
 #include "dynamics/contact.hpp"
 #include "dynamics/contact_cache.hpp"
+#include "solver/lane_shapes.hpp"
 #include "solver/lane_store.hpp"
 #include "solver/passes.hpp"
 
@@ -14,6 +15,14 @@ namespace carom::detail {
 struct BodyPair {
     std::uint32_t slot_a = 0, slot_b = 0;
     std::uint32_t body_a = 0, body_b = 0;
+};
+
+/// What keeps a contact up to date: the manifold as it was found, which is carried along as long as the cache
+/// says, and then made anew if both shapes are for lanes.
+template <int D>
+struct Carrying {
+    const ContactCache<D>& cache;
+    LanePair<D> shapes;
 };
 
 /// The contacts of one colour, from step to step. They lie in lanes without gaps: contact i is lane i mod
@@ -35,12 +44,13 @@ class ContactStore {
     /// last.
     std::uint32_t remove(std::uint32_t index, std::uint32_t first_movable);
 
-    /// Fills the rows of a contact from its record. With `cache` the points are carried along from step to
-    /// step by `refresh`; without, they stay as they are until they are written again.
-    void write(std::uint32_t index, const ContactRecord<D>& record, const ContactCache<D>* cache);
-    /// Completes the record by what the rows hold. `cache` is what the contact was last written with.
-    void read(std::uint32_t index, const ContactCache<D>& cache, ContactRecord<D>& record) const;
-    /// Is the contact carried along by `refresh`?
+    /// Fills the rows of a contact from its record. With `carrying` it is kept up to date from step to step
+    /// by `refresh`; without, its points stay as they are until they are written again.
+    void write(std::uint32_t index, const ContactRecord<D>& record, const Carrying<D>* carrying);
+    /// Completes the record by what the rows hold. `cache` is what the contact was last written with, and is
+    /// brought up to date, too.
+    void read(std::uint32_t index, ContactCache<D>& cache, ContactRecord<D>& record) const;
+    /// Is the contact kept up to date by `refresh`?
     bool is_carried(std::uint32_t index) const;
 
     const Passes<D>& passes() const { return *passes_; }
@@ -77,10 +87,10 @@ class ContactStore {
     bool some_bounce_ = false;
     LaneStore<Rows> rows_;
     LaneStore<Marks> marks_;
-    std::vector<std::uint32_t> a_, b_, body_a_, body_b_;  ///< by lane
-    std::vector<std::uint32_t> contact_;                  ///< by lane
-    std::vector<std::uint8_t> traits_;                    ///< by block
-    std::vector<std::uint32_t> found_;                    ///< by block
+    std::vector<std::uint32_t> a_, b_, body_a_, body_b_, shape_a_, shape_b_;  ///< by lane
+    std::vector<std::uint32_t> contact_;                                      ///< by lane
+    std::vector<std::uint8_t> traits_;                                        ///< by block
+    std::vector<std::uint32_t> found_;                                        ///< by block
 };
 
 }  // namespace carom::detail

@@ -18,6 +18,7 @@ struct ContactMarks {
     struct Point {
         Vec<D, F> on_a{}, on_b{};  ///< from either centre of mass, both in a's axes as they were then
         F separation{};
+        F feature{};  ///< its number, where lanes have to know it and it is small enough for a float; else -1
     };
 
     Vec<D, F> place{}, place_rest{};     ///< of b's centre of mass, seen from a
@@ -28,7 +29,9 @@ struct ContactMarks {
     F way_squared{};   ///< how far b may move against a before the manifold is to be made anew; < 0: at once
     F turn_squared{};  ///< how far it may turn
     F restitution{};
-    F touching{};  ///< 1 if the contact touched when events were last reported, else 0
+    F touching{};       ///< 1 if the contact touched when events were last reported, else 0
+    F can_be_remade{};  ///< 1 if both shapes are for lanes, which then make the manifold anew; else 0
+    F is_newer{};       ///< 1 if they have done so since the contact was written; else 0
 };
 
 /// The separation of a point that is not there.

@@ -32,6 +32,8 @@ struct BlockSpan {
     const std::uint32_t* b = nullptr;       ///< slots of the bodies, one a lane
     const std::uint32_t* body_a = nullptr;  ///< their indices in the world
     const std::uint32_t* body_b = nullptr;
+    const std::uint32_t* shape_a = nullptr;  ///< in `LaneShapes`
+    const std::uint32_t* shape_b = nullptr;
     std::uint8_t* traits = nullptr;
     std::uint32_t* found = nullptr;  ///< a bit a lane, written by the passes that look for something
     std::size_t blocks = 0;
@@ -47,9 +49,11 @@ struct BodySpan {
 
 /// Blocks of pairs that do not touch.
 struct ApartSpan {
-    const float* marks = nullptr;  ///< of `ApartMarks<D, F>`
+    float* marks = nullptr;  ///< of `ApartMarks<D, F>`
     const std::uint32_t* body_a = nullptr;
     const std::uint32_t* body_b = nullptr;
+    const std::uint32_t* shape_a = nullptr;  ///< in `LaneShapes`
+    const std::uint32_t* shape_b = nullptr;
     std::uint32_t* found = nullptr;
     std::size_t blocks = 0;
 };
@@ -61,10 +65,13 @@ struct Passes {
     int width;
 
     // Over contacts.
-    /// Carries the points along with the bodies, and finds the contacts for which that does not do.
-    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, float reach);
-    /// Finds the pairs that may touch.
-    void (*find_near)(const ApartSpan&, const PoseView<D>&, const ApartLimits<float>&);
+    /// Carries the points along with the bodies; makes the manifolds anew for which that does not do, as far
+    /// as their shapes are among those `for_lanes`; and finds the contacts that are left.
+    void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, const float* for_lanes, float reach);
+    /// Finds the pairs that may touch. Where what held them apart does so no more, it looks for another axis
+    /// that does, if their shapes are among those `for_lanes`.
+    void (*find_near)(const ApartSpan&, const PoseView<D>&, const float* for_lanes,
+                      const ApartLimits<float>&);
     /// Effective masses; applies the impulses that are kept; finds the contacts that have none.
     void (*prepare)(const BlockSpan<D>&, const RecordView<D>&);
     void (*warm_start)(const BlockSpan<D>&, const RecordView<D>&);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/passes.hpp"
+#include "solver/remake.hpp"
 
 /// The passes written out for a lane type. Included by one source file for each width, which is compiled for
 /// the instructions that the width needs. `flatten` puts all arithmetic into the loop, so that what is held
@@ -38,23 +39,48 @@ struct PassesIn {
         }
     }
 
-    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, float reach) {
+    static void refresh(const BlockSpan<D>& span, const PoseView<D>& poses, const float* for_lanes,
+                        float reach) {
         Rows* rows = reinterpret_cast<Rows*>(span.rows);
-        const Marks* marks = reinterpret_cast<const Marks*>(span.marks);
+        Marks* marks = reinterpret_cast<Marks*>(span.marks);
         for (std::size_t k = 0; k < span.blocks; ++k) {
             const Pose<D, F> a = gather_pose<F>(poses, span.body_a + k * width),
                              b = gather_pose<F>(poses, span.body_b + k * width);
-            span.found[k] = bits_of(detail::refresh(rows[k], marks[k], a, b, F(reach)));
+            auto found = detail::refresh(rows[k], marks[k], a, b, F(reach));
+            if constexpr (D == 2) {
+                const auto wanted = both(found, marks[k].can_be_remade > F(0));
+                if (any(wanted)) {
+                    LaneOutline<F> of_a, of_b;
+                    gather_outline(for_lanes, span.shape_a + k * width, of_a);
+                    gather_outline(for_lanes, span.shape_b + k * width, of_b);
+                    found = both(found, !remake(rows[k], marks[k], a, b, of_a, of_b, wanted, F(reach)));
+                }
+            }
+            span.found[k] = bits_of(found);
         }
     }
 
-    static void find_near(const ApartSpan& span, const PoseView<D>& poses, const ApartLimits<float>& limits) {
-        const auto* marks = reinterpret_cast<const ApartMarks<D, F>*>(span.marks);
+    static void find_near(const ApartSpan& span, const PoseView<D>& poses, const float* for_lanes,
+                          const ApartLimits<float>& limits) {
+        auto* marks = reinterpret_cast<ApartMarks<D, F>*>(span.marks);
         const ApartLimits<F> wide{F(limits.reach), F(limits.slow_way), F(limits.dt), F(limits.falling)};
         for (std::size_t k = 0; k < span.blocks; ++k) {
-            const std::uint32_t *a = span.body_a + k * width, *b = span.body_b + k * width;
-            span.found[k] = bits_of(may_touch(marks[k], gather_pose<F>(poses, a), gather_pose<F>(poses, b),
-                                              gather_speeds<F>(poses, a), gather_speeds<F>(poses, b), wide));
+            const std::uint32_t *body_a = span.body_a + k * width, *body_b = span.body_b + k * width;
+            const Pose<D, F> a = gather_pose<F>(poses, body_a), b = gather_pose<F>(poses, body_b);
+            const Speeds<D, F> speed_a = gather_speeds<F>(poses, body_a),
+                               speed_b = gather_speeds<F>(poses, body_b);
+            auto found = may_touch(marks[k], a, b, speed_a, speed_b, wide);
+            if constexpr (D == 2) {
+                const auto wanted = both(found, marks[k].can_be_remade > F(0));
+                if (any(wanted)) {
+                    LaneOutline<F> of_a, of_b;
+                    gather_outline(for_lanes, span.shape_a + k * width, of_a);
+                    gather_outline(for_lanes, span.shape_b + k * width, of_b);
+                    look_again(marks[k], a, b, of_a, of_b, wanted, wide.reach);
+                    found = both(found, may_touch(marks[k], a, b, speed_a, speed_b, wide));
+                }
+            }
+            span.found[k] = bits_of(found);
         }
     }
 

@@ -41,7 +41,7 @@ Solver<D>::Solver() : passes_(&passes_of_width<D>(lane_width())) {
 }
 
 template <int D>
-void Solver<D>::add(std::uint32_t contact, ContactRecord<D>& c, const ContactCache<D>* cache) {
+void Solver<D>::add(std::uint32_t contact, ContactRecord<D>& c, const Carrying<D>* carrying) {
     const BodyPair bodies{slots_.slot(c.body_a), slots_.slot(c.body_b), c.body_a, c.body_b};
     const int colour =
         colours_.take({bodies.slot_a, bodies.slot_b, pair_key(c.body_a, c.body_b)}, view_.first_movable);
@@ -50,16 +50,16 @@ void Solver<D>::add(std::uint32_t contact, ContactRecord<D>& c, const ContactCac
     ++count_;
     ++touching_[bodies.slot_a];
     ++touching_[bodies.slot_b];
-    write(c, cache);
+    write(c, carrying);
 }
 
 template <int D>
-void Solver<D>::write(const ContactRecord<D>& c, const ContactCache<D>* cache) {
-    sections_[c.place.colour].contacts.write(c.place.index, c, cache);
+void Solver<D>::write(const ContactRecord<D>& c, const Carrying<D>* carrying) {
+    sections_[c.place.colour].contacts.write(c.place.index, c, carrying);
 }
 
 template <int D>
-void Solver<D>::read(const ContactCache<D>& cache, ContactRecord<D>& c) const {
+void Solver<D>::read(ContactCache<D>& cache, ContactRecord<D>& c) const {
     sections_[c.place.colour].contacts.read(c.place.index, cache, c);
 }
 

@@ -91,25 +91,27 @@ class Solver {
     }
     /// How many contacts found no colour.
     std::size_t without_colour() const { return sections_[Colours::overflow].contacts.size(); }
-    /// Takes up a contact of which a body can be pushed. With `cache`, `refresh` carries it along from then
-    /// on; without, it is to be written before each step.
-    void add(std::uint32_t contact, ContactRecord<D>& record, const ContactCache<D>* cache);
-    void write(const ContactRecord<D>& record, const ContactCache<D>* cache);
-    /// Completes the record by what the solver knows. `cache` is what it was last written with.
-    void read(const ContactCache<D>& cache, ContactRecord<D>& record) const;
+    /// Takes up a contact of which a body can be pushed. With `carrying`, `refresh` keeps it up to date from
+    /// then on; without, it is to be written before each step.
+    void add(std::uint32_t contact, ContactRecord<D>& record, const Carrying<D>* carrying);
+    void write(const ContactRecord<D>& record, const Carrying<D>* carrying);
+    /// Completes the record by what the solver knows. `cache` is what it was last written with, and is
+    /// brought up to date, too.
+    void read(ContactCache<D>& cache, ContactRecord<D>& record) const;
     bool is_carried(const ContactRecord<D>& record) const;
     /// Returns the contact whose place is now that of the removed one, or `none`.
     std::uint32_t remove(ContactRecord<D>& record);
     /// The contact has another number now.
     void rename(const ContactRecord<D>& record, std::uint32_t contact);
 
-    /// Carries the contacts along with their bodies. Calls `look(contact)` for each that has to be looked at:
-    /// its manifold is no longer good, or it is not carried along.
+    /// Keeps the contacts up to date with their bodies. Calls `look(contact)` for each that has to be looked
+    /// at: its manifold is no longer good and not for lanes, or it is not carried along.
     template <class Look>
-    void refresh(std::span<const BodyState<D>> states, float reach, Scheduler* scheduler, Look&& look) {
+    void refresh(std::span<const BodyState<D>> states, const LaneShapes<D>& shapes, float reach,
+                 Scheduler* scheduler, Look&& look) {
         const PoseView<D> poses{reinterpret_cast<const double*>(states.data())};
         each_part(scheduler, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
-            passes.refresh(span, poses, reach);
+            passes.refresh(span, poses, shapes.data(), reach);
         });
         each_used([&](Section& s) { each_found(s, look); });
     }

@@ -34,4 +34,22 @@ void set_pose(const RelativePose<D>& pose, Vec<D, float>& place, Vec<D, float>& 
     split(pose.rotation, turn, turn_rest);
 }
 
+inline Rotation<2> sum(const Rotation<2, float>& first, const Rotation<2, float>& rest) {
+    return {double{first.c} + rest.c, double{first.s} + rest.s};
+}
+inline Rotation<3> sum(const Rotation<3, float>& first, const Rotation<3, float>& rest) {
+    return {double{first.x} + rest.x, double{first.y} + rest.y, double{first.z} + rest.z,
+            double{first.w} + rest.w};
+}
+
+/// What `set_pose` was given, to 2⁻⁴⁸ of it.
+template <int D>
+RelativePose<D> pose_of(const Vec<D, float>& place, const Vec<D, float>& place_rest,
+                        const Rotation<D, float>& turn, const Rotation<D, float>& turn_rest) {
+    RelativePose<D> pose;
+    pose.position = narrow<double>(place) + narrow<double>(place_rest);
+    pose.rotation = sum(turn, turn_rest);
+    return pose;
+}
+
 }  // namespace carom::detail

@@ -59,6 +59,7 @@ void World<D>::remove_body(BodyId<D> body) {
     for (const ShapeId<D>& shape : w.infos[i].shapes) {
         w.remove_visits_of(shape.index);
         w.remove_leaf(shape.index);
+        w.lane_shapes.forget(shape.index);
         w.shape_slots.release(shape.index);
     }
     w.forces.remove_all_of(body);

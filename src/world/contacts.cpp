@@ -31,9 +31,9 @@ void WorldState<D>::add_contact(const PairKey& key) {
                       contact_list(key.b, c.on_fixed));
     contacts.push_back(c);
     caches.emplace_back();
-    loosen(static_cast<std::uint32_t>(contacts.size() - 1));
-    if (!c.on_fixed) return;
-    if (++fixed_contacts_of[mover(c)] == 2) regrouped.push_back(mover(c));
+    if (c.on_fixed && ++fixed_contacts_of[mover(c)] == 2) regrouped.push_back(mover(c));
+    const auto contact = static_cast<std::uint32_t>(contacts.size() - 1);
+    if (!stays_apart(contact)) loosen(contact);
 }
 
 /// A body that has several contacts with fixed shapes may lie on one surface that they make up, so that they
@@ -104,6 +104,7 @@ void WorldState<D>::forget_manifolds_of(std::uint32_t body) {
         stop_carrying(contact);
         caches[contact].forget();
     });
+    for (const ShapeId<D>& shape : infos[body].shapes) lane_shapes.forget(shape.index);
 }
 
 /// The contact is to be looked at, in this step or the next. From then on its record is up to date.
@@ -154,12 +155,18 @@ void WorldState<D>::take_loose() {
     }
 }
 
-/// What is known of the contact now.
+/// What is known of the contact now, and in `cache` of its manifold.
+template <int D>
+ContactRecord<D> WorldState<D>::current(std::uint32_t contact, ContactCache<D>& cache) const {
+    ContactRecord<D> c = contacts[contact];
+    cache = caches[contact];
+    if (c.place) solver.read(cache, c);
+    return c;
+}
 template <int D>
 ContactRecord<D> WorldState<D>::current(std::uint32_t contact) const {
-    ContactRecord<D> c = contacts[contact];
-    if (c.place) solver.read(caches[contact], c);
-    return c;
+    ContactCache<D> unused;
+    return current(contact, unused);
 }
 
 /// The solver is told which bodies move. Contacts of those that began to are looked at from now on.
@@ -183,23 +190,47 @@ void WorldState<D>::follow_bodies() {
     }
 }
 
-/// Does the contact need nothing but to be carried along with its bodies? Not where the manifold is made anew
-/// in each step, where several fixed shapes may be one surface, and where a sleeper may have to be woken.
+/// How the solver keeps the contact up to date with its bodies. Nothing where the manifold has to be made
+/// anew in each step and lanes cannot do that, where several fixed shapes may be one surface, and where a
+/// sleeper may have to be woken. On what is fixed a surface has rights (`lay_on_fixed_face`) that lanes know
+/// nothing of, and neither do they of what may be struck.
 template <int D>
-bool WorldState<D>::can_be_carried(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
-    if (!definition.continuous || cache.way < 0 || c.special) return false;
-    if (c.on_fixed) return fixed_contacts_of[mover(c)] == 1;
-    return moving[c.body_a] != stands_still && moving[c.body_b] != stands_still;
+std::optional<Carrying<D>> WorldState<D>::carrying(std::uint32_t contact) {
+    const ContactRecord<D>& c = contacts[contact];
+    Carrying<D> result{caches[contact], {}};
+    if (!definition.continuous || c.special) return std::nullopt;
+    if (c.on_fixed) {
+        if (fixed_contacts_of[mover(c)] != 1) return std::nullopt;
+    } else {
+        if (moving[c.body_a] == stands_still || moving[c.body_b] == stands_still) return std::nullopt;
+        if (!may_be_struck(c)) result.shapes = lane_pair(c);
+    }
+    if (result.cache.way < 0 && !result.shapes) return std::nullopt;
+    return result;
 }
 
-/// Does nothing have to be known of the contact until its bodies have come nearer? The cache has to tell of a
-/// gap between shapes that are not infinite. Where several fixed shapes may be one surface, each counts.
+/// The shapes of the contact, for lanes.
 template <int D>
-bool WorldState<D>::can_stay_apart(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
+LanePair<D> WorldState<D>::lane_pair(const ContactRecord<D>& c) {
+    if (c.facet != no_part) return {};
+    return {lane_shapes.find(c.shape_a, shapes[c.shape_a].shape, masses[c.body_a]),
+            lane_shapes.find(c.shape_b, shapes[c.shape_b].shape, masses[c.body_b])};
+}
+
+/// If nothing has to be known of the contact until its bodies have come nearer, it is put with those that are
+/// apart. It must be known what holds the shapes apart, or lanes find that out. Where several fixed shapes
+/// may be one surface, each counts.
+template <int D>
+bool WorldState<D>::stays_apart(std::uint32_t contact) {
+    ContactRecord<D>& c = contacts[contact];
     if (!definition.continuous || c.count > 0 || c.touching || c.merged || c.special || may_be_struck(c))
         return false;
-    if (cache.count > 0 || cache.way < 0 || cache.normal == Vec<D, float>{}) return false;
-    return masses[c.body_b].radius > 0 && (!c.on_fixed || fixed_contacts_of[mover(c)] == 1);
+    if (!(masses[c.body_b].radius > 0) || (c.on_fixed && fixed_contacts_of[mover(c)] != 1)) return false;
+    const LanePair<D> pair = lane_pair(c);
+    if (!pair && !caches[contact].tells_of_gap()) return false;
+    c.apart = apart.add(contact, c.body_a, c.body_b, caches[contact], masses[c.body_a].radius,
+                        masses[c.body_b].radius, pair);
+    return true;
 }
 
 /// Gives the solver what came out for the loose contacts. Those that can be carried along are not loose then.
@@ -215,16 +246,12 @@ void WorldState<D>::place_contacts() {
         if (!any_moves(c.body_a, c.body_b)) continue;
         const bool pushes =
             c.count > 0 && (moving[c.body_a] == moves_freely || moving[c.body_b] == moves_freely);
-        const bool carried = pushes && can_be_carried(c, caches[i]);
-        if (pushes && c.place) solver.write(c, carried ? &caches[i] : nullptr);
+        const auto carried = pushes ? carrying(i) : std::nullopt;
+        if (pushes && c.place) solver.write(c, carried ? &*carried : nullptr);
         if (pushes && !c.place) to_place.push_back(i);
         if (!pushes && c.place) leave_solver(i);
         if (carried) continue;
-        if (!pushes && can_stay_apart(c, caches[i])) {
-            c.apart =
-                apart.add(i, c.body_a, c.body_b, caches[i], masses[c.body_a].radius, masses[c.body_b].radius);
-            continue;
-        }
+        if (!pushes && stays_apart(i)) continue;
         c.loose = static_cast<std::uint32_t>(left);
         loose[left++] = i;
     }
@@ -232,25 +259,27 @@ void WorldState<D>::place_contacts() {
     std::ranges::sort(to_place);
     for (const std::uint32_t i : to_place) {
         ContactRecord<D>& c = contacts[i];
-        solver.add(i, c, can_be_carried(c, caches[i]) ? &caches[i] : nullptr);
+        const auto carried = carrying(i);
+        solver.add(i, c, carried ? &*carried : nullptr);
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                                            \
-    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const;         \
-    template void WorldState<D>::add_contact(const PairKey&);                           \
-    template void WorldState<D>::part_from_others();                                    \
-    template void WorldState<D>::remove_picked_contacts();                              \
-    template void WorldState<D>::remove_contacts_of(std::uint32_t);                     \
-    template void WorldState<D>::remove_contacts_between(std::uint32_t, std::uint32_t); \
-    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);               \
-    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                    \
-    template void WorldState<D>::loosen(std::uint32_t);                                 \
-    template void WorldState<D>::stop_carrying(std::uint32_t);                          \
-    template void WorldState<D>::leave_apart(std::uint32_t);                            \
-    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;              \
-    template void WorldState<D>::take_loose();                                          \
-    template void WorldState<D>::follow_bodies();                                       \
+#define CAROM_INSTANTIATE(D)                                                                 \
+    template std::uint32_t WorldState<D>::mover(const ContactRecord<D>&) const;              \
+    template void WorldState<D>::add_contact(const PairKey&);                                \
+    template void WorldState<D>::part_from_others();                                         \
+    template void WorldState<D>::remove_picked_contacts();                                   \
+    template void WorldState<D>::remove_contacts_of(std::uint32_t);                          \
+    template void WorldState<D>::remove_contacts_between(std::uint32_t, std::uint32_t);      \
+    template void WorldState<D>::remove_contacts_of_shape(std::uint32_t);                    \
+    template void WorldState<D>::forget_manifolds_of(std::uint32_t);                         \
+    template void WorldState<D>::loosen(std::uint32_t);                                      \
+    template void WorldState<D>::stop_carrying(std::uint32_t);                               \
+    template void WorldState<D>::leave_apart(std::uint32_t);                                 \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t) const;                   \
+    template ContactRecord<D> WorldState<D>::current(std::uint32_t, ContactCache<D>&) const; \
+    template void WorldState<D>::take_loose();                                               \
+    template void WorldState<D>::follow_bodies();                                            \
     template void WorldState<D>::place_contacts();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

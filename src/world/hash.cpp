@@ -194,8 +194,9 @@ std::uint64_t World<D>::hash() const {
     }
     for (const CouplingRecord<D>& c : w.couplings)
         fold.all(c.joint, c.ends[0], c.ends[1], c.factors, c.sum, c.is_rope, c.kept, c.before);
-    for (std::uint32_t i = 0; i < w.contacts.size(); ++i) fold(w.current(i));
-    fold.all(w.caches, w.sensor_pairs);
+    ContactCache<D> cache;
+    for (std::uint32_t i = 0; i < w.contacts.size(); ++i) fold.all(w.current(i, cache), cache);
+    fold(w.sensor_pairs);
     return fold.hash.value();
 }
 

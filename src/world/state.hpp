@@ -178,6 +178,7 @@ struct WorldState {
     std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
     Adjacency contact_links;                       ///< contacts between `contact_list`s of shapes
     std::vector<std::uint32_t> loose;              ///< contacts that are looked at one by one, or `nowhere`
+    LaneShapes<D> lane_shapes;                     ///< shapes of contacts that are collided in lanes
     ApartStore<D> apart;                           ///< contacts that are known not to touch
     std::vector<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
     std::vector<SensorPair> sensor_pairs;
@@ -281,11 +282,13 @@ struct WorldState {
     void leave_solver(std::uint32_t contact);
     void take_loose();
     void follow_bodies();
-    bool can_be_carried(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
-    bool can_stay_apart(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    std::optional<Carrying<D>> carrying(std::uint32_t contact);
+    bool stays_apart(std::uint32_t contact);
+    LanePair<D> lane_pair(const ContactRecord<D>& contact);
     void leave_apart(std::uint32_t contact);
     void place_contacts();
     ContactRecord<D> current(std::uint32_t contact) const;
+    ContactRecord<D> current(std::uint32_t contact, ContactCache<D>& cache) const;
     std::uint32_t mover(const ContactRecord<D>& contact) const;
 
     // narrow_phase.cpp: who touches whom, and where.

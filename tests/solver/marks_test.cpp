@@ -73,12 +73,14 @@ TYPED_TEST(MarksIn, PointsAreCarriedAlongWithTheBodies) {
         ContactStore<D> store;
         store.set_passes(passes_of_width<D>(1));
         store.push(0, {1, 2, 0, 1}, 1);
-        store.write(0, c.record, &c.cache);
+        const Carrying<D> carrying{c.cache, {}};
+        store.write(0, c.record, &carrying);
         const std::array<BodyState<D>, 2> states{c.a_now, c.b_now};
-        store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())}, 1);
+        store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())}, nullptr, 1);
         EXPECT_EQ(store.found(0), 0u);
         ContactRecord<D> now = c.record;
-        store.read(0, c.cache, now);
+        ContactCache<D> cache = c.cache;
+        store.read(0, cache, now);
         ASSERT_EQ(now.count, c.cache.count);
         const Vec<D> found = narrow<double>(c.cache.normal);
         const Vec<D> normal = c.cache.normal_of == NormalOf::second
@@ -110,13 +112,15 @@ TYPED_TEST(MarksIn, WhatMovedTooFarIsFound) {
         ContactStore<D> store;
         store.set_passes(passes_of_width<D>(1));
         store.push(0, {1, 2, 0, 1}, 1);
-        store.write(0, c.record, &c.cache);
+        const Carrying<D> carrying{c.cache, {}};
+        store.write(0, c.record, &carrying);
         const std::array<BodyState<D>, 2> states{c.a_now, c.b_now};
-        store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())},
+        store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())}, nullptr,
                                out_of_reach ? -1.0f : 1.0f);
         EXPECT_EQ(store.found(0), 1u) << i;
         ContactRecord<D> now = c.record;
-        store.read(0, c.cache, now);
+        ContactCache<D> cache = c.cache;
+        store.read(0, cache, now);
         ASSERT_EQ(now.count, out_of_reach ? 0 : c.record.count) << "impulses are not lost";
         for (int k = 0; k < now.count; ++k) EXPECT_EQ(now.points[k].impulse, 1);
     }
@@ -153,7 +157,8 @@ TYPED_TEST(MarksIn, AStoreHasNoGaps) {
         for (std::uint32_t k = 0; k < model.size(); ++k) {
             ContactRecord<D> record;
             record.count = 1;
-            store.read(k, {}, record);
+            ContactCache<D> none;
+            store.read(k, none, record);
             EXPECT_EQ(store.contact(k), model[k]);
             EXPECT_EQ(store.b(k), 2 + model[k]);
             EXPECT_EQ(record.points[0].impulse, static_cast<float>(model[k]));

@@ -85,7 +85,8 @@ struct Scene {
         }
         const std::vector<BodyState<D>> before = states;
         solver.run({states, masses, loads, nullptr, true, dt, 4, 1});
-        for (ContactRecord<D>& c : contacts) solver.read({}, c);
+        ContactCache<D> none;
+        for (ContactRecord<D>& c : contacts) solver.read(none, c);
         // As if nothing turned, which is good enough for gaps of things at rest.
         for (ContactRecord<D>& c : contacts) {
             const auto way = [&](std::uint32_t body) {
