@@ -63,7 +63,7 @@ struct JointPassesIn {
     template <bool biased, Layout L>
     static void solve(const JointSpan& span, const RecordView<D>& bodies, const JointStep<float>& s) {
         using Rows = JointRows<D, F, L>;
-        const JointStep<F> step{F(s.h), F(s.inverse_h), F(s.share), F(s.most_way)};
+        const JointStep<F> step{F(s.h), F(s.inverse_h), F(s.share), F(s.most_way), s.again};
         each_block<Rows, biased>(
             span, bodies, [&](Rows& rows, Body<D, F>& a, Body<D, F>& b) CAROM_INLINE_LAMBDA {
                 JointPass<biased, D, F, L>(rows, a.motion, b.motion, a.weight, b.weight, step).run();

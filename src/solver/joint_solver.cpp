@@ -25,6 +25,8 @@ template <int D>
 void JointSolver<D>::plan(const JointInput<D>& input) {
     batches_.clear();
     joint_.clear();
+    ties_listed_ = false;
+    first_movable_ = input.bodies.first_movable;
     couplings_.plan(input);
     if (groups_->plan(input)) direct_->plan(input, groups_->direct(), groups_->starts());
     direct_->set_step(input.substep);

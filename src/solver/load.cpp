@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "dynamics/flight.hpp"
 #include "solver/solver.hpp"
 
@@ -90,6 +93,30 @@ void Solver<D>::prepare_contacts(const Crew& crew) {
     }
 }
 
+namespace {
+
+/// Energy of a spin, but for a factor of two.
+double spin_energy(const BodyMass<3>& mass, const Rotation3& rotation, const Vec3& spin) {
+    const Vec3 local = unrotate(rotation, spin);
+    return dot(local, mass.inertia * local);
+}
+
+/// The solver has a body's inertia as it lay at the start of the step. Where the body is then turned far, by
+/// other bodies and not as its spin would by itself, a spin about its thin axis becomes one about a thick
+/// one, with many times the energy. So what is much more than it had before and after the impulses is taken
+/// off.
+void keep_energy(BodyState<3>& state, const BodyMass<3>& mass, const Vec3& turned, const Vec3& spin_before,
+                 const Rotation3& rotation_before) {
+    constexpr double far = 0.5, much = 1.05;  // rad
+    if (mass.isotropic || !(dot(turned, turned) > far * far)) return;
+    const double most = std::max(spin_energy(mass, rotation_before, spin_before),
+                                 spin_energy(mass, rotation_before, state.angular_velocity));
+    const double now = spin_energy(mass, state.rotation, state.angular_velocity);
+    if (now > much * most) state.angular_velocity *= std::sqrt(most / now);
+}
+
+}  // namespace
+
 template <int D>
 void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) const {
     const Part part = crew.part(slots_.size() - view_.first_movable, 64);
@@ -99,10 +126,14 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
         BodyState<D>& state = input.states[slots_.body(slot)];
         const Motion<D, float> m = gather<float>(view_, &slot).motion;
         const Drive<D, float> drive = drives_.get(slot);
+        const BodyState<D> before = state;
         state.position += narrow<double>(m.moved);
         turn<D>(state, narrow<double>(m.turned));
         state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
         state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
+        if constexpr (D == 3)
+            keep_energy(state, input.masses[slots_.body(slot)], narrow<double>(m.turned),
+                        before.angular_velocity, before.rotation);
     }
 }
 

@@ -99,7 +99,9 @@ template <bool biased>
 void Solver<D>::settle_struck() {
     constexpr int sweeps = 8;
     for (Section& s : sections_) copy_struck(s);
+    if (some_joints_struck_) joints_.begin_settling();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
+        if (some_joints_struck_) joints_.settle(view_, biased);
         for (Section& s : sections_) {
             if (s.settling.empty()) continue;
             const Passes<D>& passes = s.settling.passes();
@@ -107,6 +109,24 @@ void Solver<D>::settle_struck() {
         }
     }
     for (Section& s : sections_) return_struck(s);
+    if (some_joints_struck_) joints_.end_settling();
+}
+
+/// The joints near bodies that were struck. Are there any?
+template <int D>
+bool Solver<D>::pick_struck_joints() {
+    struck_jointed_.clear();
+    for (Section& s : sections_) {
+        for (const std::uint32_t place : s.struck) {
+            for (const std::uint32_t slot : {s.contacts.a(place), s.contacts.b(place)}) {
+                if (slot >= view_.first_movable && jointed_[slot]) struck_jointed_.push_back(slot);
+            }
+        }
+    }
+    std::ranges::sort(struck_jointed_);
+    const auto doubles = std::ranges::unique(struck_jointed_);
+    struck_jointed_.erase(doubles.begin(), doubles.end());
+    return !struck_jointed_.empty() && joints_.pick_near(struck_jointed_);
 }
 
 template <int D>
@@ -178,6 +198,7 @@ void Solver<D>::sum_struck() {
 
 #define CAROM_INSTANTIATE(D)                         \
     template bool Solver<D>::find_struck();          \
+    template bool Solver<D>::pick_struck_joints();   \
     template void Solver<D>::note_blows();           \
     template void Solver<D>::forget_last_blows();    \
     template void Solver<D>::settle_struck<true>();  \

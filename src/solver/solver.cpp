@@ -150,7 +150,9 @@ void Solver<D>::step_through(const SolverInput<D>& input, const Crew& crew) {
         crew.meet();
         crew.alone([&] {
             some_struck_ = find_struck();
-            if (some_struck_) settle_struck<true>();
+            if (!some_struck_) return;
+            some_joints_struck_ = pick_struck_joints();
+            settle_struck<true>();
         });
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
         if (some_impacts_) crew.alone([&] { impact_solver_.shift(impact_view(input)); });

@@ -226,6 +226,7 @@ class Solver {
     void return_struck(Section& section);
     template <bool biased>
     void settle_struck();
+    bool pick_struck_joints();
     void sum_struck();
     void mark_struck_bodies();
     static float speed_taken(const LaneStore<Rows>& rows, std::size_t index);
@@ -255,8 +256,10 @@ class Solver {
     std::array<Section, Colours::count + 1> sections_;
     std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
     bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`
-    std::vector<std::uint8_t> is_struck_;      ///< by slot: has it a contact that is struck?
-    std::vector<std::uint32_t> struck_slots_;  ///< those that have
+    std::vector<std::uint8_t> is_struck_;        ///< by slot: has it a contact that is struck?
+    std::vector<std::uint32_t> struck_slots_;    ///< those that have
+    bool some_joints_struck_ = false;            ///< in this sub-step
+    std::vector<std::uint32_t> struck_jointed_;  ///< slots of struck bodies that have joints
     std::vector<std::pair<BlockSpan<D>, std::size_t>>
         wanted_;                   ///< blocks with such contacts, and their widths
     bool some_struck_ = false;     ///< in this sub-step

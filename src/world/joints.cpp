@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/curve.hpp"
 #include "joints/couplings.hpp"
+#include "joints/path.hpp"
 #include "joints/types.hpp"
 #include "math/check.hpp"
 #include "world/state.hpp"
@@ -20,9 +22,23 @@ std::uint32_t WorldState<D>::index(JointId<D> joint) const {
     return joint.index;
 }
 
+/// To where the joint is in the middle of the step, so that its rows lie along the chord of the way.
+template <int D>
+void WorldState<D>::follow(JointRecord<D>& joint, double dt) const {
+    const Vec<D> anchor = apply(frame_of(joint.body_b), joint.anchor_b);
+    const auto velocity = [&](std::uint32_t body) {
+        const BodyState<D>& s = states[body];
+        return s.velocity + cross(s.angular_velocity, anchor - s.position);
+    };
+    const Vec<D> ahead = (0.5 * dt) * velocity(joint.body_b);
+    if (joint.body_a == no_body) return follow_path(joint, anchor + ahead);
+    const Vec<D> behind = (0.5 * dt) * velocity(joint.body_a);
+    follow_path(joint, apply_inverse(frame_of(joint.body_a), anchor + (ahead - behind)));
+}
+
 /// The joints of bodies that move freely. These bodies are the solver's and do not fly.
 template <int D>
-void WorldState<D>::list_active_joints() {
+void WorldState<D>::list_active_joints(double dt) {
     active_joints.clear();
     active_couplings.clear();
     const auto is_free = [&](std::uint32_t body) { return body != no_body && moving[body] == moves_freely; };
@@ -30,8 +46,10 @@ void WorldState<D>::list_active_joints() {
         return is_free(joint.body_a) || is_free(joint.body_b);
     };
     for (const JointId<D>& id : joint_ids) {
-        const JointRecord<D>& joint = joints[id.index];
-        if (joint.layout != no_layout && is_active(joint)) active_joints.push_back(id.index);
+        JointRecord<D>& joint = joints[id.index];
+        if (joint.layout == no_layout || !is_active(joint)) continue;
+        active_joints.push_back(id.index);
+        if (joint.path.curve) follow(joint, dt);
     }
     for (std::uint32_t i = 0; i < couplings.size(); ++i) {
         if (is_active(couplings[i].ends[0]) || is_active(couplings[i].ends[1])) active_couplings.push_back(i);
@@ -385,10 +403,24 @@ std::span<const JointBreak<D>> World<D>::joint_breaks() const {
     return state_->events.joint_breaks;
 }
 
+namespace {
+
+/// The anchor of b, and the point of the path that is nearest to it.
+template <int D>
+std::array<Vec<D>, 2> anchors_on_path(const WorldState<D>& w, const JointRecord<D>& joint) {
+    const Transform<D> a = joint.body_a == no_body ? Transform<D>{} : w.frame_of(joint.body_a);
+    const Vec<D> b = apply(w.frame_of(joint.body_b), joint.anchor_b);
+    const Curve<D>& curve = *joint.path.curve;
+    return {apply(a, curve.at(curve.nearest(apply_inverse(a, b), joint.path.place)).point), b};
+}
+
+}  // namespace
+
 template <int D>
 std::array<Vec<D>, 2> World<D>::anchors(JointId<D> joint) const {
     const std::uint32_t i = state_->index(joint);
     const JointRecord<D>& j = state_->joints[i];
+    if (j.path.curve) return anchors_on_path(*state_, j);
     const Vec<D> a = j.body_a == no_body ? j.anchor_a : apply(state_->frame_of(j.body_a), j.anchor_a);
     return {a, apply(state_->frame_of(j.body_b), j.anchor_b)};
 }
@@ -450,10 +482,10 @@ Angular<D> World<D>::joint_torque(JointId<D> joint) const {
 template class World<2>;
 template class World<3>;
 
-#define CAROM_INSTANTIATE(D)                                   \
-    template void detail::WorldState<D>::list_active_joints(); \
-    template void detail::WorldState<D>::wake_jointed();       \
-    template void detail::WorldState<D>::break_joints(double); \
+#define CAROM_INSTANTIATE(D)                                         \
+    template void detail::WorldState<D>::list_active_joints(double); \
+    template void detail::WorldState<D>::wake_jointed();             \
+    template void detail::WorldState<D>::break_joints(double);       \
     template void detail::WorldState<D>::remove_joints_of(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -315,7 +315,8 @@ struct WorldState {
     void each_tied(std::uint32_t body, const Visit& visit) const;
 
     // joints.cpp: what binds bodies.
-    void list_active_joints();
+    void list_active_joints(double dt);
+    void follow(JointRecord<D>& joint, double dt) const;
     void wake_jointed();
     void break_joints(double dt);
     void remove_joint(std::uint32_t joint);
