@@ -19,12 +19,12 @@ struct Crowd {
     std::vector<std::uint8_t> fresh;
 
     explicit Crowd(std::int64_t count) {
-        Scatter scatter(15);
+        Random random(15);
         const double half = 0.5 * 0.3 * std::pow(double(count), 1.0 / D);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const Vec<D> center = scatter.in_cube<D>(half);
+            const Vec<D> center = random.in_cube<D>(half);
             Vec<D> extent;
-            for (int k = 0; k < D; ++k) extent[k] = scatter.between(0.15, 0.25);
+            for (int k = 0; k < D; ++k) extent[k] = random.between(0.15, 0.25);
             boxes.push_back(Aabb<D>{center - extent, center + extent});
             listed.push_back(i);
             fresh.push_back(i % 2);  // about as many as get new boxes in a step
@@ -73,13 +73,13 @@ template <int D>
 void crowd_move(benchmark::State& state) {
     Crowd<D> crowd(state.range(0));
     detail::Tree<D> tree = crowd.tree();
-    Scatter scatter(16);
+    Random random(16);
     std::vector<std::int32_t> moved;
     for (auto _ : state) {
         moved.clear();
         for (const std::uint32_t i : crowd.listed) {
             if (!crowd.fresh[i]) continue;
-            const Vec<D> way = scatter.in_cube<D>(0.05);
+            const Vec<D> way = random.in_cube<D>(0.05);
             const Aabb<D> box = detail::widened(crowd.boxes[i]);
             crowd.boxes[i] = Aabb<D>{box.lower + way, box.upper + way};
             moved.push_back(std::int32_t(i));
@@ -94,7 +94,7 @@ void crowd_move(benchmark::State& state) {
 template <int D>
 void world_add(benchmark::State& state) {
     constexpr int count = 100'000;
-    Scatter scatter(17);
+    Random random(17);
     for (auto _ : state) {
         World<D> world;
         BodyDefinition<D> body;
@@ -103,9 +103,9 @@ void world_add(benchmark::State& state) {
         for (int k = 0; k < D; ++k) box.size[k] = 1;
         body.shapes = {{box}};
         for (int i = 0; i < count; ++i) {
-            body.position = scatter.in_cube<D>(D == 2 ? 450 : 93);
+            body.position = random.in_cube<D>(D == 2 ? 450 : 93);
             if (state.range(0) == 1) {
-                box.size.x = scatter.between(0.5, 1.5);
+                box.size.x = random.between(0.5, 1.5);
                 body.shapes[0].geometry = box;
             }
             world.add_body(body);

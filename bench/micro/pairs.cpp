@@ -22,10 +22,10 @@ constexpr Depth depths[] = {{"far", 1}, {"near", -0.001}, {"deep", -0.25}};
 
 template <int D>
 std::vector<Transform<D>> placements_of(const Solid<D>& a, const Solid<D>& b, double gap) {
-    Scatter scatter(1);
+    Random random(1);
     std::vector<Transform<D>> result;
     while (int(result.size()) < placements) {
-        Transform<D> placed{2.0 * scatter.direction<D>(), scatter.rotation<D>()};
+        Transform<D> placed{2.0 * random.direction<D>(), random.rotation<D>()};
         // A few rounds along the axis bring the gap about, where there is one.
         for (int round = 0; round < 3; ++round) {
             const auto apart = separation<D>(a, Transform<D>{}, b, placed);

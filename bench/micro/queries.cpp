@@ -20,10 +20,10 @@ const World<D>& world() {
 template <int D>
 const std::vector<Ray<D>>& rays() {
     static const std::vector<Ray<D>> made = [] {
-        Scatter scatter(13);
+        Random random(13);
         std::vector<Ray<D>> result;
         for (int i = 0; i < 100'000; ++i)
-            result.push_back({scatter.in_cube<D>(half<D>), 100.0 * scatter.direction<D>()});
+            result.push_back({random.in_cube<D>(half<D>), 100.0 * random.direction<D>()});
         return result;
     }();
     return made;

@@ -15,12 +15,12 @@ constexpr double half = D == 2 ? 450 : 93;
 
 template <int D>
 std::vector<typename detail::Tree<D>::Entry> entries() {
-    Scatter scatter(9);
+    Random random(9);
     std::vector<typename detail::Tree<D>::Entry> result;
     for (int i = 0; i < boxes; ++i) {
-        const Vec<D> center = scatter.in_cube<D>(half<D>);
+        const Vec<D> center = random.in_cube<D>(half<D>);
         Vec<D> extent;
-        for (int k = 0; k < D; ++k) extent[k] = scatter.between(0.25, 0.75);
+        for (int k = 0; k < D; ++k) extent[k] = random.between(0.25, 0.75);
         result.push_back({Aabb<D>{center - extent, center + extent}, std::uint32_t(i)});
     }
     return result;
@@ -54,11 +54,11 @@ void tree_insert(benchmark::State& state) {
 /// Every box moves by up to 0.2 m.
 template <int D>
 void tree_move(benchmark::State& state) {
-    Scatter scatter(11);
+    Random random(11);
     detail::Tree<D> tree = built<D>();
     for (auto _ : state) {
         for (std::int32_t leaf = 0; leaf < boxes; ++leaf) {
-            const Vec<D> way = scatter.in_cube<D>(0.2);
+            const Vec<D> way = random.in_cube<D>(0.2);
             const Aabb<D> box = detail::widened(tree.box(leaf));
             tree.move(leaf, Aabb<D>{box.lower + way, box.upper + way});
         }
@@ -83,10 +83,10 @@ void tree_query(benchmark::State& state) {
 template <int D>
 void tree_ray(benchmark::State& state) {
     const detail::Tree<D> tree = built<D>();
-    Scatter scatter(13);
+    Random random(13);
     std::vector<Ray<D>> rays;
     for (int i = 0; i < 4096; ++i)
-        rays.push_back({scatter.in_cube<D>(half<D>), 100.0 * scatter.direction<D>()});
+        rays.push_back({random.in_cube<D>(half<D>), 100.0 * random.direction<D>()});
     std::size_t next = 0, found = 0;
     for (auto _ : state) {
         const Ray<D>& ray = rays[next++ % rays.size()];

@@ -38,22 +38,24 @@ class Expansion {
     }
 
     Gap3 run(double tolerance, double share) {
-        if (!begin()) return best_;
+        if (!begin()) return uncertain();
         while (vertices_.size() < most_vertices && !queue_.empty()) {
             const std::uint32_t nearest = take_nearest();
             if (!triangles_[nearest].alive) continue;
             const Vec3 normal = triangles_[nearest].normal;
             const double offset = triangles_[nearest].offset;
             // The polytope lies within the difference: no direction has less depth than its nearest face.
-            if (-best_.distance - offset <= tolerance + share * std::fabs(best_.distance)) break;
+            if (-best_.distance - offset <= tolerance + share * std::fabs(best_.distance)) return best_;
             const Vec3 vertex = extreme(normal);
             // Where nothing lies beyond, this is the surface itself, and the best over it is known.
-            if (dot(normal, vertex) - offset > 1e-3 * tolerance && !grow(nearest, vertex)) break;
+            if (dot(normal, vertex) - offset > 1e-3 * tolerance && !grow(nearest, vertex)) return uncertain();
         }
-        return best_;
+        return queue_.empty() ? best_ : uncertain();
     }
 
   private:
+    Gap3 uncertain() const { return {best_.normal, best_.distance, false}; }
+
     Vec3 extreme(const Vec3& direction) {
         const Vec3 vertex = difference_support<3>(a_, b_, b_in_a_, direction).difference;
         const double gap = -dot(direction, vertex);

@@ -8,6 +8,7 @@ namespace carom::detail {
 struct Gap3 {
     Vec3 normal{};  ///< unit vector from a to b, in a's frame
     double distance = -1e300;
+    bool certain = true;  ///< false where rounding ended the search, or its length, before nothing was left
 };
 
 /// The widest gap between two cores that overlap or nearly touch, by the expanding polytope algorithm (van

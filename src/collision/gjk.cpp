@@ -14,14 +14,27 @@ constexpr double touching = 1e-13;
 /// A simplex of less than this share of its extent's area or volume is flat, and its inside is not asked for.
 constexpr double flat = 1e-14;
 
+/// Some of the vertices that the search has, and the point of what they span that is closest to the origin.
 template <int D>
 struct Simplex {
     std::array<SimplexVertex<D>, D + 1> vertices{};
-    std::array<double, D + 1> weights{};  ///< of the point closest to the origin
+    std::array<double, D + 1> weights{};  ///< of the closest point
     int count = 0;
     Vec<D> closest{};
+};
 
-    const Vec<D>& operator[](int i) const { return vertices[i].difference; }
+/// A part of a simplex by the numbers of its vertices.
+template <int D>
+struct Part {
+    const std::array<SimplexVertex<D>, D + 1>* vertices;
+    std::array<int, D + 1> numbers;
+    std::array<double, D + 1> weights;
+    int count = 0;
+    Vec<D> closest;
+
+    explicit Part(const Simplex<D>& whole) : vertices(&whole.vertices) {}
+    void add(int number) { numbers[count++] = number; }
+    const Vec<D>& operator[](int i) const { return (*vertices)[numbers[i]].difference; }
 };
 
 double determinant(const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); }
@@ -29,7 +42,7 @@ double determinant(const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, 
 /// Scales the weights to a sum of one. False when not all of them have the sign of their sum: then the point
 /// that they stand for is outside.
 template <int D>
-bool normalize_weights(Simplex<D>& s, double least_sum) {
+bool normalize_weights(Part<D>& s, double least_sum) {
     double sum = 0;
     for (int i = 0; i < s.count; ++i) sum += s.weights[i];
     if (!(std::fabs(sum) > least_sum)) return false;
@@ -41,7 +54,7 @@ bool normalize_weights(Simplex<D>& s, double least_sum) {
 }
 
 template <int D>
-bool solve_edge(Simplex<D>& s) {
+bool solve_edge(Part<D>& s) {
     const Vec<D> edge = s[1] - s[0];
     s.weights[0] = dot(s[1], edge);
     s.weights[1] = -dot(s[0], edge);
@@ -55,7 +68,7 @@ bool solve_edge(Simplex<D>& s) {
 /// In a plane through a corner of a triangle, two of whose edges are e and f, the point nearest to the origin
 /// is corner + s·e + t·f. The corner is the one opposite the longest edge: there e and f are furthest from
 /// parallel, and n = e × f and all that depends on it are as exact as they can be for a needle.
-bool solve_triangle(Simplex<3>& simplex) {
+bool solve_triangle(Part<3>& simplex) {
     int corner = 0;
     double longest = -1;
     for (int i = 0; i < 3; ++i) {
@@ -80,11 +93,11 @@ bool solve_triangle(Simplex<3>& simplex) {
 
 /// Is the origin within a simplex of as many corners as it can have? Its weights are the areas or volumes
 /// that it spans with the other corners.
-bool solve_full(Simplex<2>& s, double extent) {
+bool solve_full(Part<2>& s, double extent) {
     s.weights = {cross(s[1], s[2]), cross(s[2], s[0]), cross(s[0], s[1])};
     return normalize_weights(s, flat * extent * extent);
 }
-bool solve_full(Simplex<3>& s, double extent) {
+bool solve_full(Part<3>& s, double extent) {
     s.weights = {determinant(s[1], s[2], s[3]), -determinant(s[0], s[2], s[3]), determinant(s[0], s[1], s[3]),
                  -determinant(s[0], s[1], s[2])};
     return normalize_weights(s, flat * extent * extent * extent);
@@ -93,7 +106,7 @@ bool solve_full(Simplex<3>& s, double extent) {
 /// Finds the point nearest to the origin in the flat that the vertices span, and tells if it lies within the
 /// simplex.
 template <int D>
-bool solve_whole(Simplex<D>& s) {
+bool solve_whole(Part<D>& s) {
     if (s.count == 1) {
         s.weights[0] = 1;
         s.closest = s[0];
@@ -102,51 +115,65 @@ bool solve_whole(Simplex<D>& s) {
     if (s.count == 2) return solve_edge(s);
     if constexpr (D == 3)
         if (s.count == 3) return solve_triangle(s);
-    double extent = 0;
-    for (int i = 0; i < s.count; ++i) extent = std::max(extent, length(s[i]));
+    double square = 0;
+    for (int i = 0; i < s.count; ++i) square = std::max(square, length_squared(s[i]));
     s.closest = {};
-    return solve_full(s, extent);
+    return solve_full(s, std::sqrt(square));
 }
 
-/// The smallest part of the simplex that holds its point closest to the origin. Only parts with the newest
-/// vertex come into question, as the closest point of the rest is known and further away.
+/// Leaves of a simplex the smallest part that holds its point closest to the origin. Only parts with the
+/// newest vertex come into question, as the closest point of the rest is known and further away.
 template <int D>
-Simplex<D> reduce(const Simplex<D>& whole) {
-    Simplex<D> best;
+void reduce(Simplex<D>& whole) {
+    Part<D> best(whole);
     double best_square = 0;
     const int newest = whole.count - 1;
-    for (int part = 0; part < 1 << newest; ++part) {
-        Simplex<D> s;
+    for (int choice = 0; choice < 1 << newest; ++choice) {
+        Part<D> part(whole);
         for (int i = 0; i < newest; ++i)
-            if (part >> i & 1) s.vertices[s.count++] = whole.vertices[i];
-        s.vertices[s.count++] = whole.vertices[newest];
-        if (!solve_whole(s)) continue;
-        const double square = s.count > D ? 0 : length_squared(s.closest);
+            if (choice >> i & 1) part.add(i);
+        part.add(newest);
+        if (!solve_whole(part)) continue;
+        const double square = part.count > D ? 0 : length_squared(part.closest);
         if (best.count == 0 || square < best_square) {
-            best = s;
+            best = part;
             best_square = square;
         }
     }
-    return best;
+    whole.count = best.count;
+    whole.closest = best.closest;
+    for (int i = 0; i < best.count; ++i) {  // in the order that they have, so none is lost
+        whole.vertices[i] = whole.vertices[best.numbers[i]];
+        whole.weights[i] = best.weights[i];
+    }
 }
 
 /// Of a simplex that holds the origin, itself or the face whose weights come nearest to it: those of a
 /// simplex that is all but flat are mostly rounding.
 template <int D>
-Simplex<D> surest_weights(const Simplex<D>& whole) {
-    const auto miss = [](const Simplex<D>& s) {
+void make_weights_sure(Simplex<D>& whole) {
+    const auto miss = [&](int count, const auto& vertex, const auto& weights) {
         Vec<D> sum{};
-        for (int i = 0; i < s.count; ++i) sum += s.weights[i] * s[i];
+        for (int i = 0; i < count; ++i) sum += weights[i] * vertex(i);
         return length_squared(sum);
     };
-    Simplex<D> best = whole;
+    Part<D> best(whole);
+    double least = miss(
+        whole.count, [&](int i) { return whole.vertices[i].difference; }, whole.weights);
     for (int left_out = 0; left_out < whole.count; ++left_out) {
-        Simplex<D> face;
+        Part<D> face(whole);
         for (int i = 0; i < whole.count; ++i)
-            if (i != left_out) face.vertices[face.count++] = whole.vertices[i];
-        if (solve_whole(face) && miss(face) < miss(best)) best = face;
+            if (i != left_out) face.add(i);
+        if (!solve_whole(face)) continue;
+        const double candidate = miss(
+            face.count, [&](int i) { return face[i]; }, face.weights);
+        if (!(candidate < least)) continue;
+        least = candidate;
+        best = face;
     }
-    return best;
+    if (best.count == 0) return;
+    whole.weights.fill(0);
+    for (int i = 0; i < best.count; ++i) whole.weights[best.numbers[i]] = best.weights[i];
 }
 
 }  // namespace
@@ -167,10 +194,13 @@ CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transf
     if (!(length_squared(start) > 0)) start.x = 1;
 
     Simplex<D> simplex;
-    simplex.vertices[0] = difference_support(a, b, b_in_a, start);
-    simplex.count = 1;
-    simplex = reduce(simplex);
-    double extent = length(simplex[0]);
+    const auto begin_at = [&](const SimplexVertex<D>& vertex) {
+        simplex.vertices[0] = vertex;
+        simplex.count = 1;
+        reduce(simplex);
+    };
+    begin_at(difference_support(a, b, b_in_a, start));
+    double extent = length(simplex.closest);
     double distance = extent;
     Simplex<D> nearest;
     double nearest_distance = std::numeric_limits<double>::infinity();
@@ -183,7 +213,7 @@ CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transf
         if (dot(axis, next.difference - simplex.closest) <= precision * extent) break;
         Simplex<D> larger = simplex;
         larger.vertices[larger.count++] = next;
-        larger = reduce(larger);
+        reduce(larger);
         const double nearer = larger.count > D ? 0 : length(larger.closest);
         if (!(nearer < distance)) {
             // Rounding holds it up, mostly at needles of points on a rim. From the newest point alone it may
@@ -193,10 +223,7 @@ CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transf
                 nearest_distance = distance;
             }
             if (restarts-- == 0) break;
-            larger = {};
-            larger.vertices[larger.count++] = next;
-            larger = reduce(larger);
-            simplex = larger;
+            begin_at(next);
             distance = length(simplex.closest);
             continue;
         }
@@ -209,12 +236,12 @@ CoreDistance<D> core_distance(const Shape<D>& a, const Shape<D>& b, const Transf
         distance = nearest_distance;
     }
     CoreDistance<D> result;
-    const Simplex<D> weighted = simplex.count > D ? surest_weights(simplex) : simplex;
-    for (int i = 0; i < weighted.count; ++i) {
-        result.on_a += weighted.weights[i] * weighted.vertices[i].on_a;
-        result.on_b += weighted.weights[i] * weighted.vertices[i].on_b;
-    }
     result.overlap = simplex.count > D || distance <= touching * extent;
+    if (simplex.count > D) make_weights_sure(simplex);
+    for (int i = 0; i < simplex.count; ++i) {
+        result.on_a += simplex.weights[i] * simplex.vertices[i].on_a;
+        result.on_b += simplex.weights[i] * simplex.vertices[i].on_b;
+    }
     if (!result.overlap) {
         result.distance = distance;
         result.axis = simplex.closest / -distance;

@@ -14,6 +14,34 @@ struct Part {
     int side;
 };
 
+template <int D>
+PackedBox packed(const OuterBox<D>& box, std::int32_t leaf) {
+    PackedBox result{};
+    for (int i = 0; i < D; ++i) {
+        result.lower[i] = box.lower[i];
+        result.upper[i] = box.upper[i];
+    }
+    result.set_number(std::uint32_t(leaf));
+    return result;
+}
+
+template <int D>
+OuterBox<D> unpacked(const PackedBounds& bounds) {
+    OuterBox<D> box;
+    for (int i = 0; i < D; ++i) {
+        box.lower[i] = bounds.lower[i];
+        box.upper[i] = bounds.upper[i];
+    }
+    return box;
+}
+
+/// The middle of the box; what is infinite both ways has its centre at 0.
+Four center_of(const PackedBox& box) {
+    constexpr float f = 1e30f;
+    constexpr Four furthest{f, f, f, f};
+    return 0.5f * greatest(box.lower, -furthest) + 0.5f * least(box.upper, furthest);
+}
+
 }  // namespace
 
 template <int D>
@@ -243,11 +271,11 @@ void Tree<D>::insert_all(std::span<const Entry> entries, std::span<std::int32_t>
 
 template <int D>
 void Tree<D>::rebuild() {
-    std::vector<Piece> pieces;
+    std::vector<PackedBox> pieces;
     pieces.reserve(static_cast<std::size_t>(leaf_count_));
     for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
         if (nodes_[i].height == 0)
-            pieces.push_back({nodes_[i].box, center_of(nodes_[i].box), i});
+            pieces.push_back(packed(nodes_[i].box, i));
         else if (nodes_[i].height > 0)
             free(i);
     }
@@ -260,7 +288,7 @@ void Tree<D>::rebuild() {
         const Part part = parts.back();
         parts.pop_back();
         const bool single = part.end - part.begin == 1;
-        const std::int32_t node = single ? pieces[part.begin].leaf : allocate();
+        const std::int32_t node = single ? std::int32_t(pieces[part.begin].number()) : allocate();
         nodes_[node].parent = part.parent;
         if (part.parent == none)
             root_ = node;
@@ -277,67 +305,63 @@ void Tree<D>::rebuild() {
     for (auto node = inner.rbegin(); node != inner.rend(); ++node) enclose_children(*node);
 }
 
-/// The middle of the box; what is infinite both ways has its centre at 0.
-template <int D>
-Vec<D, float> Tree<D>::center_of(const OuterBox<D>& box) {
-    constexpr float furthest = 1e30f;
-    Vec<D, float> center;
-    for (int i = 0; i < D; ++i)
-        center[i] = 0.5f * std::max(box.lower[i], -furthest) + 0.5f * std::min(box.upper[i], furthest);
-    return center;
-}
-
 /// Orders the pieces so that the first ones, as many as it returns, make one half and the rest the other, at
 /// the least of (number · surface) summed over both, tried at the borders of equal bins of the centres.
 template <int D>
-std::size_t Tree<D>::split(std::span<Piece> pieces) {
+std::size_t Tree<D>::split(std::span<PackedBox> pieces) {
     constexpr int most_bins = 16;
     const int bin_count = int(std::min<std::size_t>(most_bins, pieces.size()));
-    struct Bin {
-        OuterBox<D> box{};
+    struct Bin {  // of which only those that are used are set
+        Four lower, upper;
+        std::size_t count;
+    };
+    struct Side {
+        PackedBounds bounds;
         std::size_t count = 0;
 
-        void add(const OuterBox<D>& other, std::size_t n) {
-            box = count ? merged(box, other) : other;
-            count += n;
+        void add(const Bin& bin) {
+            bounds.hold(bin);
+            count += bin.count;
         }
-        double cost() const { return double(count) * half_surface(box); }
+        double cost() const { return count == 0 ? 0 : double(count) * half_surface(unpacked<D>(bounds)); }
     };
     if (pieces.size() == 2) return 1;
-    Vec<D, float> least = pieces[0].center, most = least;
-    for (const Piece& piece : pieces) {
-        for (int i = 0; i < D; ++i) {
-            least[i] = std::min(least[i], piece.center[i]);
-            most[i] = std::max(most[i], piece.center[i]);
-        }
-    }
-    const Vec<D, float> size = most - least;
+    PackedBounds centers;
+    for (const PackedBox& piece : pieces) centers.hold(center_of(piece));
+    const Four size = centers.upper - centers.lower;
     int axis = 0;
     for (int i = 1; i < D; ++i)
         if (size[i] > size[axis]) axis = i;
     if (!(size[axis] > 0)) return pieces.size() / 2;
 
-    const float per_length = static_cast<float>(bin_count) / size[axis];
-    const auto bin_of = [&](const Piece& piece) {
-        return std::min(bin_count - 1, int((piece.center[axis] - least[axis]) * per_length));
+    const float per_length = static_cast<float>(bin_count) / size[axis], origin = centers.lower[axis];
+    const auto bin_of = [&](const PackedBox& piece) {
+        return std::min(bin_count - 1, int((center_of(piece)[axis] - origin) * per_length));
     };
     std::array<Bin, most_bins> bins;
-    for (const Piece& piece : pieces) bins[bin_of(piece)].add(piece.box, 1);
+    constexpr PackedBounds nothing;
+    for (int i = 0; i < bin_count; ++i) bins[i] = {nothing.lower, nothing.upper, 0};
+    for (const PackedBox& piece : pieces) {
+        Bin& bin = bins[bin_of(piece)];
+        bin.lower = least(bin.lower, piece.lower);
+        bin.upper = greatest(bin.upper, piece.upper);
+        ++bin.count;
+    }
 
     std::array<double, most_bins> cost{};  // of a border before bin i
-    Bin left, right;
+    Side left, right;
     for (int i = 1; i < bin_count; ++i) {
-        if (bins[i - 1].count) left.add(bins[i - 1].box, bins[i - 1].count);
-        cost[i] += left.cost();
+        left.add(bins[i - 1]);
+        cost[i] = left.cost();
     }
     for (int i = bin_count - 1; i > 0; --i) {
-        if (bins[i].count) right.add(bins[i].box, bins[i].count);
+        right.add(bins[i]);
         cost[i] += right.cost();
     }
     // The outermost bins hold a piece each, so no border leaves a side empty.
     const int border = int(std::min_element(cost.begin() + 1, cost.begin() + bin_count) - cost.begin());
     const auto middle =
-        std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return bin_of(p) < border; });
+        std::partition(pieces.begin(), pieces.end(), [&](const PackedBox& p) { return bin_of(p) < border; });
     return std::size_t(middle - pieces.begin());
 }
 

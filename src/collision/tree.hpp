@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collision/box.hpp"
+#include "geometry/packed_box.hpp"
 
 namespace carom::detail {
 
@@ -116,13 +117,6 @@ class Tree {
         bool leaf() const { return child[0] == none; }
     };
 
-    /// A leaf while the tree is built.
-    struct Piece {
-        OuterBox<D> box;
-        Vec<D, float> center;
-        std::int32_t leaf;
-    };
-
     std::int32_t allocate();
     void free(std::int32_t node);
     std::int32_t best_sibling(const OuterBox<D>& box);
@@ -134,8 +128,7 @@ class Tree {
     void refit_upwards(std::int32_t node, bool rotate);
     void refit();
     std::int32_t add_leaf(const OuterBox<D>& box, std::uint32_t payload);
-    static Vec<D, float> center_of(const OuterBox<D>& box);
-    static std::size_t split(std::span<Piece> pieces);
+    static std::size_t split(std::span<PackedBox> pieces);
 
     std::vector<Node> nodes_;
     std::int32_t root_ = none;

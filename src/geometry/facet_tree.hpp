@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "carom/scheduler.hpp"
 #include "geometry/ray.hpp"
 
 namespace carom::detail {
@@ -14,8 +16,8 @@ namespace carom::detail {
 /// boxes in bytes, as multiples of a step from the node's own corner, rounded outwards: a box and eight of
 /// them are compared byte by byte, and a node of space fills two cache lines (after Ylitie, Karras and Laine:
 /// Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017). It is built from the top
-/// by the surface-area heuristic over bins (Wald: On fast Construction of SAH-based Bounding Volume
-/// Hierarchies, 2007). Its form, and so the order of its answers, depends on nothing but the boxes.
+/// by the surface-area heuristic over bins (`Bins`), in single precision about the middle of all. Its form,
+/// and so the order of its answers, depends on nothing but the boxes.
 template <int D>
 class FacetTree {
   public:
@@ -26,8 +28,8 @@ class FacetTree {
     static constexpr int width = 8;
     static constexpr std::uint32_t most_items = 1u << 27;
 
-    /// Builds the tree; at most `most_items`.
-    void build(std::vector<Item> items);
+    /// Builds the tree, with the workers of the scheduler if there is one; at most `most_items`.
+    void build(std::span<const Item> items, Scheduler* scheduler = nullptr);
 
     /// Calls `visit(facet)` for every item whose box may overlap `box`: for all that do, and a few more.
     template <class Visitor>
@@ -60,6 +62,7 @@ class FacetTree {
     static constexpr int stack_size = 8 + 7 * (deepest_heuristic + 27);
 
     class Builder;
+    struct Branch;
     template <class Visitor>
     double visit_leaf(std::uint32_t leaf, double max_fraction, Visitor&& visit) const {
         const std::uint32_t first = leaf & ((1u << count_shift) - 1);

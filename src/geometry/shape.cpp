@@ -45,8 +45,24 @@ Polygon box_core(const Transform2& placed, const Vec2& half) {
     return polygon;
 }
 
+/// What all boxes have in common: which corners make which faces and edges.
+const Polyhedron& any_box() {
+    static const Polyhedron common = [] {
+        Polyhedron box;
+        // Faces −x, +x, −y, +y, −z, +z.
+        box.indices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+        box.first = {0, 4, 8, 12, 16, 20, 24};
+        connect(box);
+        return box;
+    }();
+    return common;
+}
+
 Polyhedron box_core(const Transform3& placed, const Vec3& half) {
-    Polyhedron box;
+    Polyhedron box = any_box();
+    box.vertices.reserve(8);
+    box.normals.reserve(6);
+    box.offsets.reserve(6);
     for (int i = 0; i < 8; ++i) {
         const Vec3 corner{i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         box.vertices.push_back(apply(placed, corner));
@@ -58,10 +74,6 @@ Polyhedron box_core(const Transform3& placed, const Vec3& half) {
             box.offsets.push_back(dot(normal, placed.position) + half[axis]);
         }
     }
-    // Faces −x, +x, −y, +y, −z, +z.
-    box.indices = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
-    box.first = {0, 4, 8, 12, 16, 20, 24};
-    connect(box);
     measure(box);
     return box;
 }
@@ -191,14 +203,6 @@ void fill(Shape<3>& shape, const Cone& cone, const Transform3& placed) {
     fill_round(shape, ShapeKind::cone, cone, placed);
 }
 
-template <int D, class Ground>
-requires std::is_constructible_v < Terrain<D>,
-const Ground&,
-    const Transform<D>& > void fill(Shape<D>& shape, const Ground& ground, const Transform<D>& placed) {
-    shape.kind = ShapeKind::terrain;
-    shape.terrain = std::make_shared<const Terrain<D>>(ground, placed);
-}
-
 template <int D>
 std::size_t furthest_of(const std::vector<Vec<D>>& points, const Vec<D>& direction) {
     std::size_t best = 0;
@@ -305,7 +309,7 @@ void check_material(const Material& material) {
 }
 
 template <int D>
-Shape<D> make_shape(const ShapeDefinition<D>& definition) {
+Shape<D> make_shape(const ShapeDefinition<D>& definition, Scheduler* scheduler) {
     check_material(definition.material);
     require_place(definition.center, "center");
     require_unit(definition.rotation, "rotation");
@@ -316,7 +320,16 @@ Shape<D> make_shape(const ShapeDefinition<D>& definition) {
     }
     const Transform<D> placed{definition.center, normalized(definition.rotation)};
     Shape<D> shape;
-    std::visit([&](const auto& geometry) { fill(shape, geometry, placed); }, definition.geometry);
+    std::visit(
+        [&]<class Kind>(const Kind& geometry) {
+            if constexpr (is_terrain_type<Kind>) {
+                shape.kind = ShapeKind::terrain;
+                shape.terrain = std::make_shared<const Terrain<D>>(geometry, placed, scheduler);
+            } else {
+                fill(shape, geometry, placed);
+            }
+        },
+        definition.geometry);
     return shape;
 }
 
@@ -438,8 +451,8 @@ std::optional<FacePlane<D>> facing_plane(const Shape<D>& shape, const Vec<D>& di
     return most > facing_cosine ? std::optional(best) : std::nullopt;
 }
 
-template Shape<2> make_shape(const ShapeDefinition<2>&);
-template Shape<3> make_shape(const ShapeDefinition<3>&);
+template Shape<2> make_shape(const ShapeDefinition<2>&, Scheduler*);
+template Shape<3> make_shape(const ShapeDefinition<3>&, Scheduler*);
 template Vec<2> middle_of(const Shape<2>&);
 template Vec<3> middle_of(const Shape<3>&);
 template Shape<2> inner_ball(const Shape<2>&);

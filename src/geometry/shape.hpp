@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carom/mass.hpp"
+#include "carom/scheduler.hpp"
 #include "carom/shapes.hpp"
 #include "geometry/columns.hpp"
 
@@ -73,9 +74,10 @@ constexpr double shortest_length = 1e-9, longest_length = 1e9;
 /// Checks what a shape is made of. Throws `Error` that names the field.
 void check_material(const Material& material);
 
-/// Checks the definition and makes the shape. Throws `Error` that names the field (`radius`, `size`, …).
+/// Checks the definition and makes the shape, large terrain by the workers of the scheduler if there is one.
+/// Throws `Error` that names the field (`radius`, `size`, …).
 template <int D>
-Shape<D> make_shape(const ShapeDefinition<D>& definition);
+Shape<D> make_shape(const ShapeDefinition<D>& definition, Scheduler* scheduler = nullptr);
 
 /// Axis-aligned bounds of the shape on a body at `placed`; a plane's are infinite (±1e300) where they must
 /// be.

@@ -1,9 +1,11 @@
 #include "geometry/terrain.hpp"
 
 #include <limits>
+#include <mutex>
 #include <string>
 #include <utility>
 
+#include "core/crew.hpp"
 #include "geometry/shape.hpp"
 #include "math/check.hpp"
 
@@ -56,6 +58,15 @@ void check_materials(const std::vector<Material>& materials, const std::vector<s
     }
 }
 
+template <int D>
+Aabb<D> merged(Aabb<D> a, const Aabb<D>& b) {
+    for (int i = 0; i < D; ++i) {
+        a.lower[i] = std::min(a.lower[i], b.lower[i]);
+        a.upper[i] = std::max(a.upper[i], b.upper[i]);
+    }
+    return a;
+}
+
 /// Facets thinner than this share of their length have no normal that one could rely on.
 constexpr double thinnest = 1e-10;
 
@@ -73,7 +84,7 @@ bool has_area(const Facet<D>& facet) {
 }  // namespace
 
 template <int D>
-Terrain<D>::Terrain(const Chain& chain, const Transform<D>& placed) requires(D == 2)
+Terrain<D>::Terrain(const Chain& chain, const Transform<D>& placed, Scheduler* scheduler) requires(D == 2)
     : two_sided_(chain.two_sided), materials_(chain.materials), material_of_(chain.material_of) {
     const std::size_t count = chain.points.size();
     check_count("points", count, chain.loop ? 3 : 2, FacetTree<2>::most_items);
@@ -87,11 +98,11 @@ Terrain<D>::Terrain(const Chain& chain, const Transform<D>& placed) requires(D =
     }
     check_materials(materials_, material_of_, segments, "segments");
     for (const Vec2& p : chain.points) vertices_.push_back(apply(placed, p));
-    build();
+    build(scheduler);
 }
 
 template <int D>
-Terrain<D>::Terrain(const Mesh& mesh, const Transform<D>& placed) requires(D == 3)
+Terrain<D>::Terrain(const Mesh& mesh, const Transform<D>& placed, Scheduler* scheduler) requires(D == 3)
     : two_sided_(mesh.two_sided),
       facets_(mesh.triangles),
       materials_(mesh.materials),
@@ -113,7 +124,7 @@ Terrain<D>::Terrain(const Mesh& mesh, const Transform<D>& placed) requires(D == 
     check_materials(materials_, material_of_, facets_.size(), "triangles");
     vertices_.reserve(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) vertices_.push_back(apply(placed, p));
-    build();
+    build(scheduler);
 }
 
 namespace {
@@ -162,13 +173,13 @@ void check_field(const HeightField<D>& field) {
 }  // namespace
 
 template <int D>
-Terrain<D>::Terrain(const HeightField<D>& field, const Transform<D>& placed)
+Terrain<D>::Terrain(const HeightField<D>& field, const Transform<D>& placed, Scheduler* scheduler)
     : is_grid_(true), materials_(field.materials), material_of_(field.material_of) {
     check_field(field);
     auto [heights, count] = flattened(field);
     grid_ = HeightGrid<D>(std::move(heights), count, field.spacing, placed);
     check_materials(materials_, material_of_, grid_.size() / HeightGrid<D>::facets_per_cell, "cells");
-    build();
+    build(scheduler);
 }
 
 template <int D>
@@ -181,24 +192,33 @@ bool Terrain<D>::exists(const Facet<D>& facet) const {
 
 /// Finds the bounds and, for chains and meshes, grows the tree over the facets that have an area.
 template <int D>
-void Terrain<D>::build() {
+void Terrain<D>::build(Scheduler* scheduler) {
+    constexpr std::size_t grain = 1u << 14;
+    using Item = typename FacetTree<D>::Item;
+    constexpr std::uint32_t missing = ~std::uint32_t{0};
+    std::vector<Item> items(is_grid_ ? 0 : size());
+    std::mutex joining;
     bool any = false;
-    std::vector<typename FacetTree<D>::Item> items;
-    if (!is_grid_) items.reserve(facets_.size());
-    for (std::uint32_t i = 0; i < size(); ++i) {
-        const Facet<D> here = facet(i);
-        if (is_grid_ ? !exists(here) : !has_area(here)) continue;
-        const Aabb<D> box = here.bounds();
-        if (!any) bounds_ = box;
-        any = true;
-        for (int k = 0; k < D; ++k) {
-            bounds_.lower[k] = std::min(bounds_.lower[k], box.lower[k]);
-            bounds_.upper[k] = std::max(bounds_.upper[k], box.upper[k]);
+    run_range(scheduler, size(), grain, [&](std::size_t begin, std::size_t end) {
+        Aabb<D> around{};
+        bool some = false;
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto index = static_cast<std::uint32_t>(k);
+            const Facet<D> here = facet(index);
+            const bool counts = is_grid_ ? exists(here) : has_area(here);
+            const Aabb<D> box = here.bounds();
+            if (!is_grid_) items[k] = {box, counts ? index : missing};
+            if (!counts) continue;
+            around = some ? merged(around, box) : box;
+            some = true;
         }
-        if (!is_grid_) items.push_back({box, i});
-    }
+        const std::lock_guard lock(joining);
+        if (some) bounds_ = any ? merged(bounds_, around) : around;
+        any |= some;
+    });
     if (!any) throw Error(is_grid_ ? "heights: all cells are holes" : "triangles: none has an area");
-    if (!is_grid_) tree_.build(std::move(items));
+    std::erase_if(items, [](const Item& item) { return item.facet == missing; });
+    tree_.build(items, scheduler);
 }
 
 template <int D>

@@ -78,10 +78,11 @@ constexpr bool is_terrain_type =
 template <int D>
 class Terrain {
   public:
-    /// Throws `Error` that names the field for what cannot be.
-    Terrain(const Chain& chain, const Transform<D>& placed) requires(D == 2);
-    Terrain(const Mesh& mesh, const Transform<D>& placed) requires(D == 3);
-    Terrain(const HeightField<D>& field, const Transform<D>& placed);
+    /// Throws `Error` that names the field for what cannot be. What is large is made by the workers of the
+    /// scheduler, if there is one; the result is the same.
+    Terrain(const Chain& chain, const Transform<D>& placed, Scheduler* scheduler = nullptr) requires(D == 2);
+    Terrain(const Mesh& mesh, const Transform<D>& placed, Scheduler* scheduler = nullptr) requires(D == 3);
+    Terrain(const HeightField<D>& field, const Transform<D>& placed, Scheduler* scheduler = nullptr);
 
     /// Around all facets that exist.
     const Aabb<D>& bounds() const { return bounds_; }
@@ -110,7 +111,7 @@ class Terrain {
     std::size_t bytes() const;
 
   private:
-    void build();
+    void build(Scheduler* scheduler);
     bool exists(const Facet<D>& facet) const;
 
     Aabb<D> bounds_{};

@@ -9,11 +9,16 @@ void Solver<D>::make_room() {
     drives_.resize(blocks);
     records_.resize(blocks * drives_.width() * body_stride<D>);
     view_.records = records_.data();
-    sums_begun_ = false;
-    for (Section& s : sections_) {
+    source_.resize(blocks * drives_.width());
+    present_.resize(blocks * drives_.width());
+    groups_known_ = false;
+    list_used();
+    each_used([](Section& s) {
         s.waiting.resize(s.contacts.blocks());
+        s.has_struck.resize(s.contacts.blocks());
+        s.groups.resize(s.contacts.blocks());
         s.hit.clear();
-    }
+    });
 }
 
 template <int D>
@@ -35,13 +40,19 @@ template <int D>
 void Solver<D>::load_bodies(const SolverInput<D>& input, const Crew& crew) {
     const Part part = crew.part(drives_.blocks_for(slots_.size()), 4);
     const auto width = static_cast<std::uint32_t>(drives_.width());
-    for (auto slot = static_cast<std::uint32_t>(part.begin) * width; slot < part.end * width; ++slot) {
-        if (is_loaded(slot)) {
-            load_body(input, slot);
-        } else {
-            drives_.set(slot, {});
-            write_record(view_, slot, Body<D, float>{});
-        }
+    const auto first = static_cast<std::uint32_t>(part.begin) * width,
+               end = static_cast<std::uint32_t>(part.end) * width;
+    for (std::uint32_t slot = first; slot < end; ++slot) {
+        const bool loaded = is_loaded(slot);
+        source_[slot] = loaded ? slots_.body(slot) : 0;
+        present_[slot] = loaded && BodySource<D>::is_plain(input.masses[source_[slot]]) ? 1.0f : 0.0f;
+    }
+    if (part.size() > 0) {
+        passes_->load({view_, drives_.data(), part}, {input.states.data(), input.masses.data(),
+                                                      input.loads.data(), source_.data(), present_.data()});
+    }
+    for (std::uint32_t slot = first; slot < end; ++slot) {
+        if (present_[slot] == 0 && is_loaded(slot)) load_body(input, slot);
     }
     crew.meet();
 }
@@ -74,7 +85,7 @@ void Solver<D>::load_body(const SolverInput<D>& input, std::uint32_t slot) {
         if (mass.angular_damping != 0)
             drive.spin_damping = static_cast<float>(1 - Decay(mass.angular_damping, h).factor);
     }
-    write_record(view_, slot, body);
+    write_record(view_, &slot, body);
     drives_.set(slot, drive);
 }
 
@@ -105,7 +116,7 @@ void Solver<D>::prepare_contacts(const Crew& crew) {
     each_share(crew, true,
                [&](const Passes<D>& passes, const BlockSpan<D>& span) { passes.prepare(span, view_); });
     if (crew.is_first()) {
-        each_section([](Section& s) {
+        each_used([](Section& s) {
             for (std::size_t block = 0; block < s.contacts.blocks(); ++block)
                 s.waiting[block] = s.contacts.found(block);
         });

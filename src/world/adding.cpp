@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/room.hpp"
 #include "math/check.hpp"
 #include "world/state.hpp"
 #include "world/validate.hpp"
@@ -22,18 +23,47 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.types.emplace_back();
         w.infos.emplace_back();
         w.applied.emplace_back();
+        w.only_shape.emplace_back();
         w.tree_of.push_back(of_fixed);
         w.moving.push_back(stands_still);
         w.place.emplace_back();
         w.loads.emplace_back();
         w.varies.emplace_back();
         w.fixed_contacts_of.push_back(0);
+    } else {
+        w.states[i] = {};
+        w.masses[i] = {};
+        w.infos[i] = {};
+        w.applied[i] = {};
     }
-    w.states[i] = {};
-    w.masses[i] = {};
-    w.infos[i] = {};
-    w.applied[i] = {};
+    w.only_shape[i] = w.no_shape;
     return i;
+}
+
+/// Room for so many more bodies, and shapes on them, where these are many.
+template <int D>
+void make_room_for(WorldState<D>& w, std::size_t bodies, std::size_t shapes) {
+    constexpr std::size_t many = 64;
+    if (bodies + shapes < many) return;
+    make_room(w.states, bodies);
+    make_room(w.masses, bodies);
+    make_room(w.types, bodies);
+    make_room(w.only_shape, bodies);
+    make_room(w.infos, bodies);
+    make_room(w.applied, bodies);
+    make_room(w.tree_of, bodies);
+    make_room(w.moving, bodies);
+    make_room(w.place, bodies);
+    make_room(w.loads, bodies);
+    make_room(w.varies, bodies);
+    make_room(w.fixed_contacts_of, bodies);
+    make_room(w.body_ids, bodies);
+    make_room(w.shapes, shapes);
+    make_room(w.company, shapes);
+    make_room(w.fat_boxes, shapes);
+    make_room(w.has_new_box, shapes);
+    make_room(w.unplanted, shapes);
+    make_room(w.moved_shapes, shapes);
 }
 
 /// As long as none of these has come to the other side of a wall, nothing has passed through.
@@ -67,6 +97,7 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeRecord<D>&
     if (i == w.shapes.size()) {
         w.shapes.emplace_back();
         w.company.emplace_back();
+        w.extents.emplace_back();
         w.fat_boxes.emplace_back();
         w.has_new_box.push_back(0);
         w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
@@ -132,20 +163,19 @@ void draw_blueprint(WorldState<D>& w, const BodyDefinition<D>& definition, std::
 
 }  // namespace
 
+namespace {
+
+/// Puts a body into the world that the blueprint serves, at `placed`; the first of its kind says what mass it
+/// has.
 template <int D>
-BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
-    WorldState<D>& w = *state_;
+BodyId<D> put_body(WorldState<D>& w, const BodyDefinition<D>& definition, const Transform<D>& placed,
+                   bool is_first) {
     Blueprint<D>& plan = w.blueprint;
-    const bool is_alike = plan.serves(definition);
-    if (is_alike)
-        validate_motion(definition);
-    else
-        draw_blueprint(w, definition, validate(definition));
     const std::uint32_t i = new_body_place(w);
     w.types[i] = definition.type;
     BodyState<D>& s = w.states[i];
-    s.position = definition.position;
-    s.rotation = normalized(definition.rotation);
+    s.position = placed.position;
+    s.rotation = normalized(placed.rotation);
     BodyInfo<D>& info = w.infos[i];
     info.can_sleep = definition.can_sleep;
     info.bullet = definition.bullet;
@@ -154,19 +184,18 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     info.user_data = definition.user_data;
     if (definition.mass || definition.center_of_mass || definition.inertia)
         info.overrides = std::make_shared<const MassOverrides<D>>(overrides_of(definition));
+    info.shapes.reserve(plan.shapes.size());
     for (const ShapeRecord<D>& record : plan.shapes) put_shape(w, i, record);
     BodyMass<D>& m = w.masses[i];
     m = plan.mass;
-    if (is_alike) {
-        s.position += rotate(s.rotation, m.center);  // from the frame to the centre of mass
-    } else {
-        w.update_mass(i);  // does the same
+    if (is_first) {
+        w.update_mass(i);  // moves the place from the frame to the centre of mass
         plan.mass = m;
+    } else {
+        s.position += rotate(s.rotation, m.center);
+        w.measure_extents(i);
     }
     w.some_locked |= definition.locks != Locks{};
-    // What has much data is not kept beyond its body.
-    if (std::ranges::any_of(plan.shapes, [](const auto& r) { return r.shape.kind == ShapeKind::terrain; }))
-        plan = {};
     if (definition.type != BodyType::fixed) {
         s.velocity = free_components<D>(m.locks, definition.velocity);
         s.angular_velocity = free_spin<D>(m.locks, definition.angular_velocity);
@@ -180,11 +209,63 @@ BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     return id;
 }
 
+/// Lets the blueprint serve the definition; true if it did not before. Throws `Error` for what cannot be.
+template <int D>
+bool prepare_blueprint(WorldState<D>& w, const BodyDefinition<D>& definition) {
+    if (w.blueprint.serves(definition)) return false;
+    draw_blueprint(w, definition, validate(definition, w.scheduler.get()));
+    return true;
+}
+
+/// What has much data is not kept beyond its body.
+template <int D>
+void forget_large(Blueprint<D>& plan) {
+    if (std::ranges::any_of(plan.shapes, [](const auto& r) { return r.shape.kind == ShapeKind::terrain; }))
+        plan = {};
+}
+
+}  // namespace
+
+template <int D>
+BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
+    WorldState<D>& w = *state_;
+    const Transform<D> placed{definition.position, definition.rotation};
+    validate_motion(definition, placed);
+    const bool is_first = prepare_blueprint(w, definition);
+    make_room_for(w, 1, w.blueprint.shapes.size());
+    const BodyId<D> id = put_body(w, definition, placed, is_first);
+    forget_large(w.blueprint);
+    return id;
+}
+
+template <int D>
+std::vector<BodyId<D>> World<D>::add_bodies(const BodyDefinition<D>& definition,
+                                            std::span<const Transform<D>> places) {
+    WorldState<D>& w = *state_;
+    std::vector<BodyId<D>> added;
+    if (places.empty()) return added;
+    std::size_t checked = 0;
+    try {
+        for (; checked < places.size(); ++checked) validate_motion(definition, places[checked]);
+    } catch (const Error& error) {
+        throw Error("places[" + std::to_string(checked) + "]." + error.what());
+    }
+    bool is_first = prepare_blueprint(w, definition);
+    make_room_for(w, places.size(), places.size() * w.blueprint.shapes.size());
+    added.reserve(places.size());
+    for (const Transform<D>& placed : places) {
+        added.push_back(put_body(w, definition, placed, is_first));
+        is_first = false;
+    }
+    forget_large(w.blueprint);
+    return added;
+}
+
 template <int D>
 ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definition) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(body);
-    Shape<D> shape = make_shape(definition);
+    Shape<D> shape = make_shape(definition, w.scheduler.get());
     require_place_for(shape, w.types[i]);
     const ShapeId<D> id = put_shape(w, i, recorded(definition, std::move(shape)));
     w.update_mass(i);
@@ -215,7 +296,7 @@ template <int D>
 void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(shape), body = w.shapes[i].body;
-    Shape<D> made = make_shape(definition);
+    Shape<D> made = make_shape(definition, w.scheduler.get());
     require_place_for(made, w.types[body]);
     std::vector<const ShapeDefinition<D>*> all;
     for (const ShapeId<D>& id : w.infos[body].shapes)
@@ -243,10 +324,12 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     w.place_visits_anew(i);
 }
 
-#define CAROM_INSTANTIATE(D)                                                       \
-    template BodyId<D> World<D>::add_body(const BodyDefinition<D>&);               \
-    template ShapeId<D> World<D>::add_shape(BodyId<D>, const ShapeDefinition<D>&); \
-    template void World<D>::remove_shape(ShapeId<D>);                              \
+#define CAROM_INSTANTIATE(D)                                                             \
+    template BodyId<D> World<D>::add_body(const BodyDefinition<D>&);                     \
+    template std::vector<BodyId<D>> World<D>::add_bodies(const BodyDefinition<D>&,       \
+                                                         std::span<const Transform<D>>); \
+    template ShapeId<D> World<D>::add_shape(BodyId<D>, const ShapeDefinition<D>&);       \
+    template void World<D>::remove_shape(ShapeId<D>);                                    \
     template void World<D>::set_shape(ShapeId<D>, const ShapeDefinition<D>&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

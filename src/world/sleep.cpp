@@ -73,8 +73,10 @@ void WorldState<D>::wake_touched(double dt) {
     if (to_wake.empty()) return;
     wake_islands();
     std::ranges::sort(roused);
+    const std::size_t listed = awake.size();
     for (const std::uint32_t i : roused) list_awake(i);
     roused.clear();
+    keep_states(listed);
     follow_bodies();
 }
 
@@ -117,8 +119,11 @@ bool WorldState<D>::note_rest(std::uint32_t body, double dt) {
 template <int D>
 void WorldState<D>::fall_asleep(double dt) {
     if (!definition.sleep) return;
-    rest.clear();
-    for (const std::uint32_t i : awake) rest.push_back(note_rest(i, dt) ? Rest::possible : Rest::none);
+    rest.resize(awake.size());
+    each_awake([&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            rest[k] = note_rest(awake[k], dt) ? Rest::possible : Rest::none;
+    });
     for (std::size_t k = 0; k < awake.size(); ++k) {
         if (rest[k] != Rest::possible) continue;
         const bool rests = gather_resting(awake[k]);

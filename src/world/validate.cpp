@@ -30,16 +30,15 @@ void require_place_for(const Shape<D>& shape, BodyType type) {
 }
 
 template <int D>
-void validate_motion(const BodyDefinition<D>& b) {
-    require_finite(b.position, "position");
-    require_unit(b.rotation, "rotation");
+void validate_motion(const BodyDefinition<D>& b, const Transform<D>& placed) {
+    require_finite(placed.position, "position");
+    require_unit(placed.rotation, "rotation");
     require_finite(b.velocity, "velocity");
     require_finite(b.angular_velocity, "angular_velocity");
 }
 
 template <int D>
-std::vector<Shape<D>> validate(const BodyDefinition<D>& b) {
-    validate_motion(b);
+std::vector<Shape<D>> validate(const BodyDefinition<D>& b, Scheduler* scheduler) {
     if (b.mass) require_positive(*b.mass, "mass");
     if (b.center_of_mass) require_finite(*b.center_of_mass, "center_of_mass");
     if (b.inertia) validate_inertia(*b.inertia);
@@ -50,7 +49,7 @@ std::vector<Shape<D>> validate(const BodyDefinition<D>& b) {
     std::vector<const ShapeDefinition<D>*> definitions;
     for (std::size_t i = 0; i < b.shapes.size(); ++i) {
         within("shapes[" + std::to_string(i) + "].", [&] {
-            shapes.push_back(make_shape(b.shapes[i]));
+            shapes.push_back(make_shape(b.shapes[i], scheduler));
             require_place_for(shapes.back(), b.type);
         });
     }
@@ -104,12 +103,12 @@ void validate(const ForceDefinition<D>& f) {
 
 template void require_place_for(const Shape<2>&, BodyType);
 template void require_place_for(const Shape<3>&, BodyType);
-template void validate_motion(const BodyDefinition<2>&);
-template void validate_motion(const BodyDefinition<3>&);
+template void validate_motion(const BodyDefinition<2>&, const Transform<2>&);
+template void validate_motion(const BodyDefinition<3>&, const Transform<3>&);
 template void validate(const WorldDefinition<2>&);
 template void validate(const WorldDefinition<3>&);
-template std::vector<Shape<2>> validate(const BodyDefinition<2>&);
-template std::vector<Shape<3>> validate(const BodyDefinition<3>&);
+template std::vector<Shape<2>> validate(const BodyDefinition<2>&, Scheduler*);
+template std::vector<Shape<3>> validate(const BodyDefinition<3>&, Scheduler*);
 template void validate(const ForceDefinition<2>&);
 template void validate(const ForceDefinition<3>&);
 

@@ -26,12 +26,12 @@ auto within(const std::string& prefix, Work&& work) {
 /// Each throws `Error` that names the field.
 template <int D>
 void validate(const WorldDefinition<D>& definition);
-/// Only what says where the body is and how it moves.
+/// Only how the body moves, and where it is to be.
 template <int D>
-void validate_motion(const BodyDefinition<D>& definition);
-/// Returns the shapes, made ready.
+void validate_motion(const BodyDefinition<D>& definition, const Transform<D>& placed);
+/// All but that. Returns the shapes, made ready.
 template <int D>
-std::vector<Shape<D>> validate(const BodyDefinition<D>& definition);
+std::vector<Shape<D>> validate(const BodyDefinition<D>& definition, Scheduler* scheduler);
 /// Numbers only; whether the bodies exist is the world's to check.
 template <int D>
 void validate(const ForceDefinition<D>& definition);

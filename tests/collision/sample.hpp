@@ -13,24 +13,33 @@ template <int D>
 struct Sample {
     Solid<D> solid;
     Transform<D> placed;
-    Vec<D> base;  ///< about where it is
+    Vec<D> base;             ///< about where it is
+    Transform<D> from_base;  ///< where it was made, as seen from there
     std::function<double(const Vec<D>& from_base)> height_from_base;
     std::function<double(const Vec<D>& direction)> reach_from_base;
     double size;
     double vagueness;  ///< how far the oracle and the shape may differ
     bool plane;
-    Vec<D> shift{};  ///< that it was moved by
+    Vec<D> shift{};        ///< that it was moved by
+    Rotation<D> turned{};  ///< about the base, before that
 
     /// Signed distance of a point from the surface, negative inside.
-    double height(const Vec<D>& point) const { return height_from_base(point - base - shift); }
-    /// How far it reaches from the base along the unit vector.
-    double reach(const Vec<D>& direction) const { return reach_from_base(direction) + dot(direction, shift); }
-    /// Moves the shape.
-    void move(const Vec<D>& way) {
-        const Vec<D> from = placed.position;
-        placed.position += way;
-        shift += placed.position - from;
+    double height(const Vec<D>& point) const {
+        return height_from_base(unrotate(turned, point - base - shift));
     }
+    /// How far it reaches from the base along the unit vector.
+    double reach(const Vec<D>& direction) const {
+        return reach_from_base(unrotate(turned, direction)) + dot(direction, shift);
+    }
+    /// Turns the shape about its base, as it was made, and moves it.
+    void place(const Rotation<D>& turn, const Vec<D>& way) {
+        turned = turn;
+        const Vec<D> here = rotate(turned, from_base.position);
+        placed = {base + here + way, normalized(turned * from_base.rotation)};
+        shift = placed.position - base - here;  // as the position is rounded, so must be the oracle's
+    }
+    /// Moves the shape.
+    void move(const Vec<D>& way) { place(turned, shift + way); }
 };
 
 template <int D>
@@ -55,6 +64,7 @@ Sample<D> random_sample(int kind, double size, Random& random, const Vec<D>& bas
             return {Geometry<2>(half),
                     there,
                     base,
+                    near,
                     [=](const Vec2& p) { return dot(half.normal, apply_inverse(near, p)) - half.offset; },
                     [=](const Vec2& d) {
                         const Vec2 normal = rotate(near.rotation, half.normal);
@@ -69,6 +79,7 @@ Sample<D> random_sample(int kind, double size, Random& random, const Vec<D>& bas
         return {shape,
                 there,
                 base,
+                near,
                 [=](const Vec2& p) { return signed_distance(*cloud, p); },
                 [=](const Vec2& d) { return cloud->highest(d) + cloud->radius; },
                 size,
@@ -77,13 +88,21 @@ Sample<D> random_sample(int kind, double size, Random& random, const Vec<D>& bas
     } else {
         const Geometry<3> geometry = space::random_geometry(static_cast<space::Kind>(kind), size, random);
         const auto body = std::make_shared<space::Body3>(geometry, near);
-        return {geometry,
+        const Solid<3> solid{geometry};
+        double vagueness = body->vagueness();
+        if (const auto* hull = std::get_if<Hull3>(&geometry)) {
+            // Where no point was left out, only faces of more than three corners may be a little off.
+            const detail::Polyhedron& core = *solid.shape().core;
+            if (core.vertices.size() == hull->points.size()) vagueness = core.unevenness;
+        }
+        return {solid,
                 there,
                 base,
+                near,
                 [=](const Vec3& p) { return body->height(p); },
                 [=](const Vec3& d) { return body->reach(d); },
                 size,
-                1e-9 * size + body->vagueness(),
+                1e-9 * size + vagueness,
                 plane};
     }
 }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <random>
 
+#include "../collision/random.hpp"
 #include "carom/error.hpp"
 #include "geometry/shape.hpp"
 
@@ -14,32 +14,7 @@ namespace carom::detail {
 
 namespace {
 
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : engine_(seed) {}
-    double between(double low, double high) {
-        return low + (high - low) * (double(engine_() >> 11) * 0x1p-53);
-    }
-    int below(int n) { return int(engine_() % std::uint64_t(n)); }
-    template <int D>
-    Vec<D> in_cube(double half) {
-        Vec<D> v;
-        for (int i = 0; i < D; ++i) v[i] = between(-half, half);
-        return v;
-    }
-    template <int D>
-    Transform<D> placement(double half) {
-        if constexpr (D == 2) {
-            return {in_cube<2>(half), normalized(Rotation2{between(-1, 1), between(-1, 1)})};
-        } else {
-            return {in_cube<3>(half),
-                    normalized(Rotation3{between(-1, 1), between(-1, 1), between(-1, 1), between(0.1, 1)})};
-        }
-    }
-
-  private:
-    std::mt19937_64 engine_;
-};
+using test::Random;
 
 constexpr double hole = std::numeric_limits<double>::quiet_NaN();
 

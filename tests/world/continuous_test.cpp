@@ -1,6 +1,5 @@
-#include <random>
-
 #include "builders.hpp"
+#include "collision/random.hpp"
 
 // What is fast meets what is in its way.
 
@@ -10,18 +9,6 @@ namespace {
 template <class T>
 struct Continuous : testing::Test {};
 TYPED_TEST_SUITE(Continuous, BothDimensions);
-
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : engine_(seed) {}
-    double between(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-    }
-    int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
-
-  private:
-    std::mt19937_64 engine_;
-};
 
 constexpr double far = 10000;
 

@@ -1,7 +1,7 @@
-#include <random>
 #include <thread>
 
 #include "builders.hpp"
+#include "collision/random.hpp"
 
 namespace carom::test {
 namespace {
@@ -10,59 +10,34 @@ template <class T>
 class WorldQueriesTest : public testing::Test {};
 TYPED_TEST_SUITE(WorldQueriesTest, BothDimensions);
 
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : engine_(seed) {}
-    double between(double low, double high) {
-        return low + (high - low) * (double(engine_() >> 11) * 0x1p-53);
-    }
-    int below(int n) { return int(engine_() % std::uint64_t(n)); }
-    template <int D>
-    Vec<D> in_cube(double half) {
-        Vec<D> v;
-        for (int i = 0; i < D; ++i) v[i] = between(-half, half);
-        return v;
-    }
-    template <int D>
-    Rotation<D> rotation() {
-        if constexpr (D == 2)
-            return Rotation2::from_angle(between(-3, 3));
-        else
-            return Rotation3::from_axis_angle(in_cube<3>(1) + Vec3{0, 0, 2}, between(-3, 3));
-    }
-
-  private:
-    std::mt19937_64 engine_;
-};
-
 template <int D>
-Geometry<D> any_geometry(Dice& dice) {
-    const double size = dice.between(0.2, 1.5);
-    const int kind = dice.below(D == 2 ? 4 : 6);
+Geometry<D> any_geometry(Random& random) {
+    const double size = random.between(0.2, 1.5);
+    const int kind = random.below(D == 2 ? 4 : 6);
     if (kind == 0) return Ball{0.5 * size};
     if (kind == 1) {
         Box<D> box{};
-        for (int i = 0; i < D; ++i) box.size[i] = dice.between(0.1, 1.5);
-        box.rounding = dice.below(2) ? 0.0 : 0.04;
+        for (int i = 0; i < D; ++i) box.size[i] = random.between(0.1, 1.5);
+        box.rounding = random.below(2) ? 0.0 : 0.04;
         return box;
     }
-    if (kind == 2) return Capsule<D>{dice.in_cube<D>(size), dice.in_cube<D>(size), 0.2 * size};
+    if (kind == 2) return Capsule<D>{random.in_cube<D>(size), random.in_cube<D>(size), 0.2 * size};
     if (kind == 3) {
         Hull<D> hull;
-        for (int i = 0; i < 9; ++i) hull.points.push_back(dice.in_cube<D>(size));
-        hull.rounding = dice.below(2) ? 0.0 : 0.05;
+        for (int i = 0; i < 9; ++i) hull.points.push_back(random.in_cube<D>(size));
+        hull.rounding = random.below(2) ? 0.0 : 0.05;
         return hull;
     }
     if constexpr (D == 3) {
-        if (kind == 4) return Cylinder{0.5 * size, dice.between(0.1, 2)};
-        return Cone{0.5 * size, dice.between(0.1, 2)};
+        if (kind == 4) return Cylinder{0.5 * size, random.between(0.1, 2)};
+        return Cone{0.5 * size, random.between(0.1, 2)};
     }
     return Ball{};
 }
 
 /// Bodies of all types and kinds about `base`, in a cube of the half length 20, on a plane.
 template <int D>
-World<D> any_world(Dice& dice, const Vec<D>& base, int bodies) {
+World<D> any_world(Random& random, const Vec<D>& base, int bodies) {
     WorldDefinition<D> definition = no_gravity<D>();
     World<D> world(definition);
     BodyDefinition<D> floor = ground<D>();
@@ -70,17 +45,17 @@ World<D> any_world(Dice& dice, const Vec<D>& base, int bodies) {
     world.add_body(floor);
     for (int i = 0; i < bodies; ++i) {
         BodyDefinition<D> body;
-        body.type = BodyType(dice.below(3));
-        body.position = base + dice.in_cube<D>(20);
-        body.rotation = dice.rotation<D>();
-        if (body.type != BodyType::fixed) body.velocity = dice.in_cube<D>(5);
-        for (int shapes = 1 + dice.below(2); shapes > 0; --shapes) {
-            ShapeDefinition<D> shape = shape_of<D>(any_geometry<D>(dice));
-            shape.center = dice.in_cube<D>(1);
-            shape.rotation = dice.rotation<D>();
-            shape.sensor = dice.below(5) == 0 && !body.shapes.empty();
-            shape.filter.category = std::uint64_t{1} << dice.below(4);
-            shape.filter.mask = dice.below(2) ? ~std::uint64_t{0} : std::uint64_t(dice.below(16));
+        body.type = BodyType(random.below(3));
+        body.position = base + random.in_cube<D>(20);
+        body.rotation = random.rotation<D>();
+        if (body.type != BodyType::fixed) body.velocity = random.in_cube<D>(5);
+        for (int shapes = 1 + random.below(2); shapes > 0; --shapes) {
+            ShapeDefinition<D> shape = shape_of<D>(any_geometry<D>(random));
+            shape.center = random.in_cube<D>(1);
+            shape.rotation = random.rotation<D>();
+            shape.sensor = random.below(5) == 0 && !body.shapes.empty();
+            shape.filter.category = std::uint64_t{1} << random.below(4);
+            shape.filter.mask = random.below(2) ? ~std::uint64_t{0} : std::uint64_t(random.below(16));
             body.shapes.push_back(shape);
         }
         world.add_body(body);
@@ -148,8 +123,8 @@ std::vector<ShapeId<D>> names(const std::vector<Placed<D>>& shapes, const auto& 
 
 template <int D>
 void expect_casts_as_brute_force(const World<D>& world, const std::vector<Placed<D>>& shapes,
-                                 const QueryFilter<D>& filter, const Vec<D>& base, Dice& dice) {
-    const Ray<D> ray{base + dice.in_cube<D>(25), dice.in_cube<D>(40)};
+                                 const QueryFilter<D>& filter, const Vec<D>& base, Random& random) {
+    const Ray<D> ray{base + random.in_cube<D>(25), random.in_cube<D>(40)};
     const auto hits = brute_hits<D>(shapes, [&](const auto& s) {
         return cast_ray<D>(s.solid, s.transform, ray.origin, ray.translation);
     });
@@ -162,8 +137,8 @@ void expect_casts_as_brute_force(const World<D>& world, const std::vector<Placed
         EXPECT_NEAR(all[i].fraction, hits[i].fraction, 1e-9);
     }
 
-    const Solid<D> moving{any_geometry<D>(dice)};
-    const Transform<D> placed{ray.origin, dice.rotation<D>()};
+    const Solid<D> moving{any_geometry<D>(random)};
+    const Transform<D> placed{ray.origin, random.rotation<D>()};
     const auto swept = brute_hits<D>(shapes, [&](const auto& s) {
         return cast_shape<D>(moving, placed, ray.translation, s.solid, s.transform);
     });
@@ -176,11 +151,11 @@ void expect_casts_as_brute_force(const World<D>& world, const std::vector<Placed
 
 template <int D>
 void expect_finds_as_brute_force(const World<D>& world, const std::vector<Placed<D>>& shapes,
-                                 const QueryFilter<D>& filter, const Vec<D>& base, Dice& dice) {
-    const Vec<D> point = base + dice.in_cube<D>(20);
+                                 const QueryFilter<D>& filter, const Vec<D>& base, Random& random) {
+    const Vec<D> point = base + random.in_cube<D>(20);
     EXPECT_EQ(world.at_point(point, filter),
               names<D>(shapes, [&](const auto& s) { return contains<D>(s.solid, s.transform, point); }));
-    const double reach = dice.between(0, 4);
+    const double reach = random.between(0, 4);
     const auto near = world.nearest_point(point, reach, filter);
     double least = std::numeric_limits<double>::infinity();
     for (const Placed<D>& s : shapes) {
@@ -203,10 +178,10 @@ void expect_finds_as_brute_force(const World<D>& world, const std::vector<Placed
 TYPED_TEST(WorldQueriesTest, answer_as_trying_every_shape_does) {
     constexpr int D = TypeParam::value;
     for (const double away : {0.0, 1e7}) {
-        Dice dice(7);
+        Random random(7);
         Vec<D> base{};
         for (int i = 0; i < D; ++i) base[i] = away * (i + 1);
-        World<D> world = any_world<D>(dice, base, 300);
+        World<D> world = any_world<D>(random, base, 300);
         const BodyId<D> ignored = world.bodies()[5];
         const QueryFilter<D> filters[] = {
             {},
@@ -218,12 +193,12 @@ TYPED_TEST(WorldQueriesTest, answer_as_trying_every_shape_does) {
             SCOPED_TRACE("round " + std::to_string(round));
             const QueryFilter<D>& filter = filters[round % 4];
             const auto shapes = all_shapes<D>(world, filter);
-            expect_casts_as_brute_force<D>(world, shapes, filter, base, dice);
-            expect_finds_as_brute_force<D>(world, shapes, filter, base, dice);
+            expect_casts_as_brute_force<D>(world, shapes, filter, base, random);
+            expect_finds_as_brute_force<D>(world, shapes, filter, base, random);
             if (round % 3 == 0) world.step(frame_time);
             if (round % 10 == 5) {
-                const BodyId<D> moved = world.bodies()[std::size_t(1 + dice.below(300))];
-                world.set_transform(moved, {base + dice.in_cube<D>(20), dice.rotation<D>()});
+                const BodyId<D> moved = world.bodies()[std::size_t(1 + random.below(300))];
+                world.set_transform(moved, {base + random.in_cube<D>(20), random.rotation<D>()});
             }
         }
     }
@@ -270,10 +245,10 @@ TYPED_TEST(WorldQueriesTest, see_what_was_struck_where_it_is_now) {
 
 TYPED_TEST(WorldQueriesTest, of_several_threads_at_once_give_the_same_answers) {
     constexpr int D = TypeParam::value;
-    Dice dice(11);
-    const World<D> world = any_world<D>(dice, {}, 400);
+    Random random(11);
+    const World<D> world = any_world<D>(random, {}, 400);
     std::vector<Ray<D>> rays;
-    for (int i = 0; i < 5000; ++i) rays.push_back({dice.in_cube<D>(25), dice.in_cube<D>(40)});
+    for (int i = 0; i < 5000; ++i) rays.push_back({random.in_cube<D>(25), random.in_cube<D>(40)});
     using Hits = std::vector<std::optional<WorldHit<D>>>;
     Hits one(rays.size()), shared(rays.size());
     world.cast_rays(rays, one);

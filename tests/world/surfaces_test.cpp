@@ -1,6 +1,5 @@
-#include <random>
-
 #include "builders.hpp"
+#include "collision/random.hpp"
 
 // Seams between fixed shapes, one-way shapes, conveyor belts.
 
@@ -10,9 +9,6 @@ namespace {
 template <class T>
 struct Surfaces : testing::Test {};
 TYPED_TEST_SUITE(Surfaces, BothDimensions);
-
-/// A share between 0 and 1, the same on every machine.
-double share(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 struct Floor {
     std::vector<double> joints;  ///< where one tile ends and the next begins
@@ -80,15 +76,15 @@ Ride ride(const Floor& floor, int kind, double speed, double friction, int steps
 
 TYPED_TEST(Surfaces, tiles_are_felt_no_more_than_a_single_floor) {
     constexpr int D = TypeParam::value;
-    std::mt19937_64 random(7);
+    Random random(7);
     const int count = trials(120);
     for (int run = 0; run < count; ++run) {
         const int kind = run % 4;
-        const double speed = std::exp(5 * share(random)), friction = run % 3 == 0 ? 0.0 : 0.3 * share(random);
+        const double speed = std::exp(5 * random.unit()), friction = run % 3 == 0 ? 0.0 : 0.3 * random.unit();
         const int steps = std::min(90, static_cast<int>(40 / speed / frame_time));
         Floor floor{{-5.0}, run % 2 == 0};
         while (floor.joints.back() < 50)
-            floor.joints.push_back(floor.joints.back() + 0.2 + 3 * share(random));
+            floor.joints.push_back(floor.joints.back() + 0.2 + 3 * random.unit());
         const Ride tiled = ride<D>(floor, kind, speed, friction, steps);
         const Ride plane = ride<D>({{-5, floor.joints.back()}, false}, kind, speed, friction, steps);
         SCOPED_TRACE("run " + std::to_string(run) + ", kind " + std::to_string(kind) + ", speed " +

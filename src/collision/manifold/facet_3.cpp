@@ -81,6 +81,14 @@ void hull_facet(const Shape<3>& hull, const Vec3& direction, Facet3& facet) {
     for (std::uint32_t i = core.first[best]; i < core.first[best + 1]; ++i)
         facet.corners.push_back({core.vertices[core.indices[i]], i - core.first[best]});
     set_face(facet, core.normals[best], Facet3::Form::face);
+    // What lies within a hair's breadth of two sides may lie far from the tip of a needle, so of a narrow
+    // face the width counts.
+    Vec3 area{};
+    for (std::size_t i = 2; i < facet.corners.size(); ++i) {
+        area += cross(facet.corners[i - 1].position - facet.corners[0].position,
+                      facet.corners[i].position - facet.corners[0].position);
+    }
+    facet.extent = std::min(facet.extent, length(area) / facet.extent);
 }
 
 /// The polygon of a disk. Its first corner is the one that lies furthest along `direction`, so that a tilted

@@ -213,8 +213,9 @@ bool edge_patch(const Meeting& meeting, double reach, Manifold<3>& manifold) {
     return meeting.confirms(least) && manifold.count > 0;
 }
 
-/// The one point where the surfaces are nearest.
-Manifold<3> single_point(const Pair3& pair, const Nearest3& nearest, double reach) {
+}  // namespace
+
+Manifold<3> contact_point(const Pair3& pair, const Nearest3& nearest, double reach) {
     const double radius_a = core_radius(pair.a), radius_b = core_radius(pair.b);
     const double separation = nearest.distance - radius_a - radius_b;
     Manifold<3> manifold;
@@ -226,6 +227,8 @@ Manifold<3> single_point(const Pair3& pair, const Nearest3& nearest, double reac
     return manifold;
 }
 
+namespace {
+
 /// Does the facet look along `direction`? Two for a plane, which must be the base.
 double facing(const Facet3& facet, const Vec3& direction) {
     if (facet.form == Facet3::Form::plane) return 2;
@@ -236,7 +239,7 @@ double facing(const Facet3& facet, const Vec3& direction) {
 
 std::optional<Manifold<3>> contact_patch(const Pair3& pair, const Nearest3& nearest, double reach) {
     if (pair.a.kind == ShapeKind::ball || pair.b.kind == ShapeKind::ball)
-        return single_point(pair, nearest, reach);
+        return contact_point(pair, nearest, reach);
 
     Memory memory;
     Facet3 a(memory.resource), b(memory.resource);
@@ -256,7 +259,7 @@ std::optional<Manifold<3>> contact_patch(const Pair3& pair, const Nearest3& near
         if (face_patch(meeting, base_is_b, reach, manifold)) return manifold;
     }
     if (!nearest.certain) return std::nullopt;
-    return edge_patch(meeting, reach, manifold) ? manifold : single_point(pair, nearest, reach);
+    return edge_patch(meeting, reach, manifold) ? manifold : contact_point(pair, nearest, reach);
 }
 
 }  // namespace carom::detail

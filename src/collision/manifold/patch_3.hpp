@@ -13,4 +13,7 @@ namespace carom::detail {
 /// `reach` are left out. Nothing when that point would be needed but `nearest` is not certain.
 std::optional<Manifold<3>> contact_patch(const Pair3& pair, const Nearest3& nearest, double reach);
 
+/// The one point where the surfaces are nearest.
+Manifold<3> contact_point(const Pair3& pair, const Nearest3& nearest, double reach);
+
 }  // namespace carom::detail

@@ -166,7 +166,9 @@ Nearest3 made_certain(const Pair3& pair, const Nearest3& found) {
     if (closest.overlap) return result;
     result.on_a = closest.on_a;
     result.on_b = closest.on_b - shift;
-    if (found.distance > 0 && closest.distance > found.distance + 1e-9 * extent) {
+    // Rounding blurs the direction between closest points that all but touch: then it shows less of a gap.
+    if (found.distance > 0 && closest.distance > found.distance + 1e-9 * extent &&
+        gap_along(pair, closest.axis).distance > found.distance) {
         result.normal = closest.axis;
         result.distance = closest.distance;
     }

@@ -84,18 +84,6 @@ Nearest3 sharpened(const Pair3& pair, const Vec3& start, double clearance, int m
     return best;
 }
 
-/// Cheaply, to within a hundredth of the depth.
-Nearest3 nearly(const Pair3& pair, const Search3& search, const Candidates& likely, double extent) {
-    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely.widest(), 1e-5 * extent, 1e-2);
-    if (widest.distance > search.limit) return gap_along(pair, widest.normal);
-    if (likely.is_of_face() && widest.distance == likely.widest().distance) {
-        Nearest3 nearest = gap_along(pair, widest.normal);
-        nearest.certain = false;
-        return nearest;
-    }
-    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 4);
-}
-
 /// As well as rounding allows.
 Nearest3 exactly(const Pair3& pair, const Gap3& likely, double extent) {
     const CoreDistance<3> found = core_distance<3>(pair.a, pair.b, pair.b_in_a);
@@ -109,14 +97,37 @@ Nearest3 exactly(const Pair3& pair, const Gap3& likely, double extent) {
         if (gap > guess.distance) guess = {found.axis, gap};
     }
     const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, guess, 1e-7 * extent, 0);
-    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 16);
+    const double clearance = std::max(std::fabs(widest.distance), 1e-4 * extent);
+    Nearest3 best = sharpened(pair, widest.normal, clearance, 16);
+    if (widest.certain) return best;
+    // Then each of many directions is followed to the widest gap near it.
+    for (int i = 0; i < 27; ++i) {
+        const Vec3 start{double(i % 3 - 1), double(i / 3 % 3 - 1), double(i / 9 - 1)};
+        if (start == Vec3{}) continue;
+        const Nearest3 other = sharpened(pair, normalized(start), clearance, 16);
+        if (other.distance > best.distance) best = other;
+    }
+    return best;
+}
+
+/// Cheaply, to within a hundredth of the depth.
+Nearest3 nearly(const Pair3& pair, const Search3& search, const Candidates& likely, double extent) {
+    const Gap3 widest = widest_gap(pair.a, pair.b, pair.b_in_a, likely.widest(), 1e-5 * extent, 1e-2);
+    if (widest.distance > search.limit) return gap_along(pair, widest.normal);
+    if (!widest.certain) return exactly(pair, widest, extent);
+    if (likely.is_of_face() && widest.distance == likely.widest().distance) {
+        Nearest3 nearest = gap_along(pair, widest.normal);
+        nearest.certain = false;
+        return nearest;
+    }
+    return sharpened(pair, widest.normal, std::max(std::fabs(widest.distance), 1e-4 * extent), 4);
 }
 
 }  // namespace
 
 Nearest3 core_revolved(const Pair3& pair, const Search3& search) {
     const double extent =
-        is_revolved(pair.a) ? std::min(core_extent(pair.a), core_extent(pair.b)) : core_extent(pair.b);
+        std::min(core_extent(pair.a) + core_radius(pair.a), core_extent(pair.b) + core_radius(pair.b));
     const Candidates likely = likely_directions(pair);
     if (likely.widest().distance > search.limit) return gap_along(pair, likely.widest().normal);
     return search.steady ? nearly(pair, search, likely, extent) : exactly(pair, likely.widest(), extent);

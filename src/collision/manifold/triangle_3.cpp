@@ -301,13 +301,15 @@ Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const T
     if (found.distance > limit) return apart(found);
     std::optional<Manifold<3>> patch;
     if (!triangle.looks_back(found.normal)) patch = contact_patch(pair, found, reach);
-    if (!patch) {
+    // The normal of the patch's face may lead back where what was found does not.
+    if (!patch || triangle.looks_back(patch->normal)) {
         found = made_certain(pair, nearest_to(triangle, pair, {limit, false, {}}));
         if (found.distance > limit) return apart(found);
         if (triangle.looks_back(found.normal)) return {};
         patch = contact_patch(pair, found, reach);
+        if (triangle.looks_back(patch->normal)) patch = contact_point(pair, found, reach);
     }
-    return triangle.looks_back(patch->normal) ? Manifold<3>{} : moved(*patch, placed);
+    return moved(*patch, placed);
 }
 
 template <>
