@@ -99,7 +99,7 @@ namespace {
 void keep_momentum(const BodyState<3>& before, const BodyMass<3>& mass, double step, BodyState<3>& after) {
     constexpr double least_turn = 0.02;  // rad in the step
     const Locks& locks = mass.locks;
-    if (mass.isotropic || locks.rx || locks.ry || locks.rz) return;
+    if (locks.rx || locks.ry || locks.rz) return;
     if (dot(before.angular_velocity, before.angular_velocity) * step * step < least_turn * least_turn) return;
     const Vec3 coasting = coasting_spin<3>(before, mass, step) - before.angular_velocity;
     const Vec3 in_body = unrotate(before.rotation, after.angular_velocity - coasting);
@@ -131,15 +131,22 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
         if (!is_loaded(slot)) continue;
         const std::uint32_t index = slots_.body(slot);
         BodyState<D>& state = input.states[index];
-        const BodyState<D> before = state;
+        const BodyMass<D>& mass = input.masses[index];
         const Motion<D, float> m = gather<float>(view_, &slot).motion;
         const Drive<D, float> drive = drives_.get(slot);
-        state.position += narrow<double>(m.moved);
-        turn<D>(state, narrow<double>(m.turned));
-        state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
-        state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
-        if (input.masses[index].inverse_mass != 0)
-            keep_momentum(before, input.masses[index], input.step, state);
+        const auto move = [&] {
+            state.position += narrow<double>(m.moved);
+            turn<D>(state, narrow<double>(m.turned));
+            state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
+            state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
+        };
+        if (mass.isotropic || mass.inverse_mass == 0) {
+            move();
+            continue;
+        }
+        const BodyState<D> before = state;
+        move();
+        keep_momentum(before, mass, input.step, state);
     }
 }
 
