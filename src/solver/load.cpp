@@ -102,7 +102,7 @@ namespace {
 void keep_momentum(const BodyState<3>& before, const BodyMass<3>& mass, double step, BodyState<3>& after) {
     constexpr double least_turn = 0.02;  // rad in the step
     const Locks& locks = mass.locks;
-    if (mass.isotropic || locks.rx || locks.ry || locks.rz) return;
+    if (locks.rx || locks.ry || locks.rz) return;
     if (dot(before.angular_velocity, before.angular_velocity) * step * step < least_turn * least_turn) return;
     const Vec3 coasting = coasting_spin<3>(before, mass, step) - before.angular_velocity;
     const Vec3 in_body = unrotate(before.rotation, after.angular_velocity - coasting);
@@ -139,7 +139,7 @@ double spin_energy(const BodyMass<3>& mass, const Rotation3& rotation, const Vec
 void keep_energy(const BodyState<3>& before, const BodyMass<3>& mass, const Vec3& turned, const Vec3& solved,
                  BodyState<3>& after) {
     constexpr double far = 0.5, much = 1.05;  // rad
-    if (mass.isotropic || !(dot(turned, turned) > far * far)) return;
+    if (!(dot(turned, turned) > far * far)) return;
     const double most = std::max(spin_energy(mass, before.rotation, before.angular_velocity),
                                  spin_energy(mass, before.rotation, solved));
     const double now = spin_energy(mass, after.rotation, after.angular_velocity);
@@ -149,7 +149,6 @@ void keep_energy(const BodyState<3>& before, const BodyMass<3>& mass, const Vec3
 /// What the solver left of a spin becomes that of the body at its new place.
 void settle_spin(const BodyState<3>& before, const BodyMass<3>& mass, double step, const Vec3& turned,
                  BodyState<3>& after) {
-    if (mass.inverse_mass == 0) return;
     const Vec3 solved = after.angular_velocity;
     keep_momentum(before, mass, step, after);
     keep_energy(before, mass, turned, solved, after);
@@ -166,14 +165,22 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
         if (!is_loaded(slot)) continue;
         const std::uint32_t index = slots_.body(slot);
         BodyState<D>& state = input.states[index];
-        const BodyState<D> before = state;
+        const BodyMass<D>& mass = input.masses[index];
         const Motion<D, float> m = gather<float>(view_, &slot).motion;
         const Drive<D, float> drive = drives_.get(slot);
-        state.position += narrow<double>(m.moved);
-        turn<D>(state, narrow<double>(m.turned));
-        state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
-        state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
-        settle_spin(before, input.masses[index], input.step, narrow<double>(m.turned), state);
+        const auto move = [&] {
+            state.position += narrow<double>(m.moved);
+            turn<D>(state, narrow<double>(m.turned));
+            state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
+            state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
+        };
+        if (mass.isotropic || mass.inverse_mass == 0) {
+            move();
+            continue;
+        }
+        const BodyState<D> before = state;
+        move();
+        settle_spin(before, mass, input.step, narrow<double>(m.turned), state);
     }
 }
 

@@ -148,13 +148,13 @@ void Solver<D>::settle(const Crew& crew) {
 template <int D>
 bool Solver<D>::pick_struck_joints() {
     struck_jointed_.clear();
-    for (Section& s : sections_) {
+    each_used([&](Section& s) {
         for (const std::uint32_t place : s.struck) {
             for (const std::uint32_t slot : {s.contacts.a(place), s.contacts.b(place)}) {
                 if (slot >= view_.first_movable && jointed_[slot]) struck_jointed_.push_back(slot);
             }
         }
-    }
+    });
     std::ranges::sort(struck_jointed_);
     const auto doubles = std::ranges::unique(struck_jointed_);
     struck_jointed_.erase(doubles.begin(), doubles.end());
