@@ -23,7 +23,7 @@ struct BenchOptions {
     std::vector<int> threads{1};
     int repeat = 3;
     int steps = 0;  ///< 0: as many as the scene says
-    bool json = false, list = false, stages = false;
+    bool json = false, list = false, stages = false, scaling = false;
 };
 
 /// One run of a scene, or several of the same.
@@ -55,18 +55,15 @@ void add_profile(const StepProfile& step, BenchResult& result) {
     sums.looked_at += step.looked_at;
 }
 
-/// Times the steps as one interval, with what the scene does between them. All scenes but those taken from a
-/// program that counts its first step leave that one out.
+/// Times the steps as one interval, with what the scene does between them, but for the first `untimed` ones.
 template <int D>
-void run_once(BenchWorld<D> (*make)(), const BenchScene& scene, bool stages, BenchResult& result) {
+void run_once(BenchWorld<D> bench, int untimed, bool stages, BenchResult& result) {
     using Clock = std::chrono::steady_clock;
-    BenchWorld<D> bench = make();
     if (result.threads > 1) bench.world.set_scheduler(make_thread_pool(result.threads));
     const auto step = [&](int index) {
         if (bench.before_step) bench.before_step(bench.world, index);
         bench.world.step(bench::step_length);
     };
-    const int untimed = scene.first_step_timed ? 0 : 1;
     for (int i = 0; i < untimed; ++i) step(i);
     bench.world.set_profiling(stages);
     const auto start = Clock::now();
@@ -89,9 +86,33 @@ BenchResult measure(const BenchScene& scene, int threads, const BenchOptions& op
     result.dimension = scene.make.index() == 0 ? 2 : 3;
     result.steps = options.steps > 0 ? options.steps : scene.steps;
     result.threads = threads;
+    // All scenes but those taken from a program that counts its first step leave that one out.
+    const int untimed = scene.first_step_timed ? 0 : 1;
     for (int i = 0; i < options.repeat; ++i)
-        std::visit([&](const auto& make) { run_once(make, scene, options.stages, result); }, scene.make);
+        std::visit([&](const auto& make) { run_once(make(), untimed, options.stages, result); }, scene.make);
     return result;
+}
+
+/// The same walls of ten boxes, from 10² to 10⁶ boxes.
+std::vector<BenchResult> measure_scaling(const BenchOptions& options) {
+    constexpr int bodies[] = {100, 300, 1000, 3000, 10'000, 30'000, 100'000, 300'000, 1'000'000};
+    constexpr int bodies_and_steps = 2'000'000, untimed = 3;
+    std::vector<BenchResult> results;
+    for (const int threads : options.threads)
+        for (const int dimension : {2, 3})
+            for (const int n : bodies) {
+                BenchResult& result = results.emplace_back();
+                result.name = dimension == 2 ? "small_pyramids_2" : "small_pyramids_3";
+                result.dimension = dimension;
+                result.threads = threads;
+                result.steps = options.steps > 0 ? options.steps : std::clamp(bodies_and_steps / n, 8, 2000);
+                for (int i = 0; i < options.repeat; ++i)
+                    if (dimension == 2)
+                        run_once(bench::small_pyramids<2>(n), untimed, options.stages, result);
+                    else
+                        run_once(bench::small_pyramids<3>(n), untimed, options.stages, result);
+            }
+    return results;
 }
 
 double best(const BenchResult& r) { return *std::min_element(r.ms_per_step.begin(), r.ms_per_step.end()); }
@@ -163,21 +184,27 @@ std::vector<BenchScene> chosen_scenes(const std::vector<std::string>& names) {
     return chosen;
 }
 
+std::vector<BenchResult> measure_all(const std::vector<BenchScene>& scenes, const BenchOptions& options) {
+    std::vector<BenchResult> results;
+    for (const BenchScene& scene : scenes)
+        for (const int threads : options.threads) results.push_back(measure(scene, threads, options));
+    return results;
+}
+
 int run_benchmarks(const BenchOptions& options) {
     const std::vector<BenchScene> scenes = chosen_scenes(options.names);
     if (options.list) {
         for (const BenchScene& scene : scenes) fmt::print("{}\n", scene.name);
         return fine;
     }
+    const std::vector<BenchResult> results =
+        options.scaling ? measure_scaling(options) : measure_all(scenes, options);
     int status = fine;
-    std::vector<BenchResult> results;
-    for (const BenchScene& scene : scenes)
-        for (const int threads : options.threads) {
-            results.push_back(measure(scene, threads, options));
-            if (results.back().reproducible) continue;
-            fmt::print(stderr, "carom: {}: equal runs ended differently\n", scene.name);
-            status = failed_check;
-        }
+    for (const BenchResult& r : results) {
+        if (r.reproducible) continue;
+        fmt::print(stderr, "carom: {}: equal runs ended differently\n", r.name);
+        status = failed_check;
+    }
     options.json ? print_json(results) : print_table(results);
     if (!options.stages || options.json) return status;
     for (const BenchResult& r : results) print_stages(r);
@@ -202,6 +229,8 @@ void add_bench(CLI::App& program, int& status) {
         ->check(CLI::Range(2, 1'000'000).description(""));
     command->add_flag("--list", options->list, "Name the scenes and end");
     command->add_flag("--json", options->json, "Print an array of objects");
+    command->add_flag("--scaling", options->scaling,
+                      "Instead of the scenes: small pyramids of 100 to 1000000 boxes in all");
     command->add_flag("--stages", options->stages, "Also print what the stages of a step take");
     command->callback([options, &status] { status = run_benchmarks(*options); });
 }

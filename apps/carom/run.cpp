@@ -78,7 +78,9 @@ io::RunSummary simulate(const RunOptions& options, const io::Scene& scene) {
     world.set_profiling(!options.profile.empty());
     Outputs<D> outputs(options, scene, built);
 
-    io::RunSummary summary{scene.name, D};
+    io::RunSummary summary;
+    summary.name = scene.name;
+    summary.dimension = D;
     summary.threads = options.threads;
     summary.energy_start = world.energy().total();
     outputs.take(world);
@@ -108,6 +110,8 @@ io::RunSummary simulate(const RunOptions& options, const io::Scene& scene) {
     summary.ms_per_step_worst = io::largest(times);
     summary.energy_end = world.energy().total();
     summary.hash = world.hash();
+    summary.awake = counts.awake;
+    if (!options.json && !options.quiet) summary.why_awake = io::reasons_awake(world);
     return summary;
 }
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "carom/error.hpp"
 #include "commands.hpp"
 #include "io/json_reader.hpp"
+#include "io/output_file.hpp"
+#include "page/validation_page.hpp"
 #include "table.hpp"
 #include "validate/case.hpp"
 
@@ -15,12 +18,8 @@ namespace {
 
 struct ValidateOptions {
     std::vector<std::string> names;
+    std::string page;
     bool json = false, list = false;
-};
-
-struct Measured {
-    std::string_view name;
-    Result result;
 };
 
 /// The cases with these names, in the order of the table; all of them for no names.
@@ -39,24 +38,25 @@ std::vector<Case> chosen_cases(const std::vector<std::string>& names) {
     return chosen;
 }
 
-void print_json(const std::vector<Measured>& rows) {
+void print_json(const std::vector<MeasuredCase>& cases) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const auto& [name, r] : rows) {
-        nlohmann::ordered_json gold = nullptr;
-        if (r.bounds.gold) gold = *r.bounds.gold;
-        list.push_back({{"name", name},
-                        {"what", r.what},
-                        {"reference", r.reference},
-                        {"result", r.result},
-                        {"error", r.error},
-                        {"hard", r.bounds.hard},
-                        {"gold", gold},
-                        {"status", r.status()}});
-    }
+    for (const auto& [c, results] : cases)
+        for (const Result& r : results) {
+            nlohmann::ordered_json gold = nullptr;
+            if (r.bounds.gold) gold = *r.bounds.gold;
+            list.push_back({{"name", c.name},
+                            {"what", r.what},
+                            {"reference", r.reference},
+                            {"result", r.result},
+                            {"error", r.error},
+                            {"hard", r.bounds.hard},
+                            {"gold", gold},
+                            {"status", r.status()}});
+        }
     fmt::print("{}\n", list.dump(2));
 }
 
-void print_table(const std::vector<Measured>& rows) {
+void print_table(const std::vector<MeasuredCase>& cases) {
     Table table({{"case"},
                  {"what"},
                  {"reference", true},
@@ -65,11 +65,12 @@ void print_table(const std::vector<Measured>& rows) {
                  {"hard", true},
                  {"gold", true},
                  {"status"}});
-    for (const auto& [name, r] : rows)
-        table.add({std::string(name), r.what, fmt::format("{:.9g}", r.reference),
-                   fmt::format("{:.9g}", r.result), fmt::format("{:.1e}", r.error),
-                   fmt::format("{:.1e}", r.bounds.hard),
-                   r.bounds.gold ? fmt::format("{:.1e}", *r.bounds.gold) : "", std::string(r.status())});
+    for (const auto& [c, results] : cases)
+        for (const Result& r : results)
+            table.add({std::string(c.name), r.what, fmt::format("{:.9g}", r.reference),
+                       fmt::format("{:.9g}", r.result), fmt::format("{:.1e}", r.error),
+                       fmt::format("{:.1e}", r.bounds.hard),
+                       r.bounds.gold ? fmt::format("{:.1e}", *r.bounds.gold) : "", std::string(r.status())});
     fmt::print("{}", table.text());
 }
 
@@ -79,19 +80,30 @@ int validate(const ValidateOptions& options) {
         for (const Case& c : cases) fmt::print("{:<4} {}\n", c.name, c.description);
         return fine;
     }
-    std::vector<Measured> rows;
-    for (const Case& c : cases)
-        for (Result& result : c.measure()) rows.push_back({c.name, std::move(result)});
+    // The file is opened first, so that a path that cannot be written is known at once.
+    std::optional<io::OutputFile> page;
+    if (!options.page.empty()) page.emplace(options.page, "page");
+    std::vector<MeasuredCase> measured;
+    for (const Case& c : cases) measured.push_back({c, c.measure()});
+    if (page) {
+        page->write(validation_page(measured));
+        page->finish();
+    }
 
+    std::size_t all = 0;
+    for (const MeasuredCase& m : measured) all += m.results.size();
     const auto count = [&](std::string_view status) {
-        return std::count_if(rows.begin(), rows.end(),
-                             [&](const Measured& m) { return m.result.status() == status; });
+        std::ptrdiff_t sum = 0;
+        for (const MeasuredCase& m : measured)
+            sum += std::count_if(m.results.begin(), m.results.end(),
+                                 [&](const Result& r) { return r.status() == status; });
+        return sum;
     };
     if (options.json)
-        print_json(rows);
+        print_json(measured);
     else {
-        print_table(rows);
-        fmt::print("{} results: {} gold, {} hard, {} failed\n", rows.size(), count("gold"), count("hard"),
+        print_table(measured);
+        fmt::print("{} results: {} gold, {} hard, {} failed\n", all, count("gold"), count("hard"),
                    count("fail"));
     }
     return count("fail") == 0 ? fine : failed_check;
@@ -105,6 +117,8 @@ void add_validate(CLI::App& program, int& status) {
     command->add_option("NAME", options->names, "Cases to run; all of them when left out");
     command->add_flag("--list", options->list, "Name the cases and end");
     command->add_flag("--json", options->json, "Print an array of objects");
+    command->add_option("--html", options->page, "Write a page to FILE that shows results and figures")
+        ->type_name("FILE.html");
     command->callback([options, &status] { status = validate(*options); });
 }
 

@@ -5,9 +5,13 @@
 #include <string_view>
 #include <variant>
 
-#include "carom/world.hpp"
+#include "subject.hpp"
 
 namespace carom::bench {
+
+using subject::World;
+using subject::World2;
+using subject::World3;
 
 /// Length of a step in every benchmark scene, s.
 constexpr double step_length = 1.0 / 60;
@@ -29,5 +33,10 @@ struct BenchScene {
 
 /// All scenes, in the order in which they run.
 std::span<const BenchScene> bench_scenes();
+
+/// Walls of ten boxes on one floor, four in the lowest row, without sleep: as many boxes as are asked for, up
+/// to a multiple of ten. For how the time of a step grows with the number of bodies.
+template <int D>
+BenchWorld<D> small_pyramids(int bodies);
 
 }  // namespace carom::bench

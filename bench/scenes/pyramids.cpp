@@ -102,6 +102,32 @@ BenchWorld<3> many_pyramids<3>() {
     return bench;
 }
 
+template <int D>
+BenchWorld<D> small_pyramids(int bodies) {
+    constexpr int base = 4, boxes = base * (base + 1) / 2;
+    constexpr double pitch = base + 1;
+    const int count = (bodies + boxes - 1) / boxes;
+    int side = 1;  // pyramids in a row: all of them in the plane, a square of rows in space
+    if constexpr (D == 2)
+        side = count;
+    else
+        while (side * side < count) ++side;
+    WorldDefinition<D> definition = bench_world<D>();
+    definition.sleep = false;
+    BenchWorld<D> bench{World<D>(definition)};
+    const double half_ground = 0.5 * pitch * (side + 1);
+    bench.world.add_body(box_body<D>(BodyType::fixed, make_vec<D>(0, -1, 0),
+                                     make_vec<D>(half_ground, 1, half_ground), box_density<D>()));
+    for (int i = 0; i < count; ++i) {
+        const double x = pitch * (i % side) - half_ground + 1, z = pitch * (i / side) - half_ground + 2;
+        add_pyramid<D>(bench.world, base, make_vec<D>(x, 0, z), true);
+    }
+    return bench;
+}
+
+template BenchWorld<2> small_pyramids(int);
+template BenchWorld<3> small_pyramids(int);
+
 namespace {
 
 /// A pyramid with a square base, whose layers begin half a metre apart. The boxes are 2 m wide, less a

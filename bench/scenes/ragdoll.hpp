@@ -1,6 +1,6 @@
 #pragma once
 
-#include "carom/world.hpp"
+#include "scenes/bench_scenes.hpp"
 
 namespace carom::bench {
 

@@ -23,6 +23,7 @@
 #include "carom/rotation.hpp"
 #include "carom/scheduler.hpp"
 #include "carom/shapes.hpp"
+#include "carom/sleep.hpp"
 #include "carom/transform.hpp"
 #include "carom/vec.hpp"
 #include "carom/version.hpp"

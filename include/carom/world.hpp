@@ -15,6 +15,7 @@
 #include "carom/profile.hpp"
 #include "carom/queries.hpp"
 #include "carom/scheduler.hpp"
+#include "carom/sleep.hpp"
 
 namespace carom {
 
@@ -198,6 +199,9 @@ class World {
     MassProperties<D> mass_properties(BodyId<D> body) const;
     BodyType type(BodyId<D> body) const;
     bool awake(BodyId<D> body) const;
+    /// Why the body is awake, as of the last step. The answer takes time in proportion to the bodies that
+    /// hang together with it and to the joints of the world.
+    AwakeReason<D> awake_reason(BodyId<D> body) const;
     std::string_view name(BodyId<D> body) const;
     std::uint64_t user_data(BodyId<D> body) const;
     /// The shapes of a body, in the order in which they were added.

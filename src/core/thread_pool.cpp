@@ -59,7 +59,7 @@ class ThreadPool : public Scheduler {
     }
 
   private:
-    static constexpr int patience = 4000;
+    static constexpr int patience = 20000;  // looks: about a millisecond
 
     void begin(const std::function<void(int)>* task) {
         task_ = task;

@@ -50,6 +50,8 @@ struct ContactCache {
     float turn = 0;  ///< and how far it may turn, rad
 
     void forget() { way = -1; }
+    /// Is it known what holds the shapes apart?
+    bool tells_of_gap() const { return count == 0 && way >= 0 && normal != Vec<D, float>{}; }
     bool holds(const RelativePose<D>& now) const;
     /// How far apart the shapes are at least: all points of b are within `radius_b` (0: infinite) of its
     /// centre, so they have come nearer along the normal by no more than it did and its turn adds. Minus
@@ -83,8 +85,7 @@ bool ContactCache<D>::holds(const RelativePose<D>& now) const {
 
 template <int D>
 double ContactCache<D>::least_gap(const RelativePose<D>& now, double radius_b) const {
-    if (count > 0 || way < 0 || normal == Vec<D, float>{} || radius_b == 0)
-        return -std::numeric_limits<double>::infinity();
+    if (!tells_of_gap() || radius_b == 0) return -std::numeric_limits<double>::infinity();
     const double along = dot(narrow<double>(normal), now.position - pose.position);
     double half_turn;  // sine of half the angle, at least
     if constexpr (D == 2) {

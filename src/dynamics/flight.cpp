@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/crew.hpp"
 #include "dynamics/buoyancy.hpp"
 #include "math/trig.hpp"
 
@@ -23,12 +24,17 @@ Decay::Decay(double damping, double step) {
 }
 
 template <int D>
-void LoadModel<D>::sum(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step) const {
-    for (const std::uint32_t i : bodies) {
-        const BodyMass<D>& m = view.masses[i];
+void LoadModel<D>::begin(std::span<const BodyMass<D>> masses, std::size_t from, std::size_t to,
+                         std::span<Load<D>> loads) const {
+    for (const std::uint32_t i : bodies.subspan(from, to - from)) {
+        const BodyMass<D>& m = masses[i];
         loads[i] = applied[i];
         loads[i].force += (m.mass * m.gravity_scale) * gravity;
     }
+}
+
+template <int D>
+void LoadModel<D>::add(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step) const {
     forces.add_loads(view, bodies, time, loads);
     const std::vector<Buoyancy<D>> waters = forces.waters(time);
     if (!waters.empty())
@@ -111,9 +117,9 @@ Pull<D> pull(const BodyState<D>& state, const BodyMass<D>& mass, const Load<D>& 
 }
 
 template <int D>
-void semi_implicit_euler(const Flight<D>& f) {
+void semi_implicit_euler(const Flight<D>& f, std::span<const std::uint32_t> bodies) {
     const double h = f.step;
-    for (const std::uint32_t i : f.bodies) {
+    for (const std::uint32_t i : bodies) {
         BodyState<D>& s = f.states[i];
         const BodyMass<D>& m = f.masses[i];
         const Pull<D> a = pull(s, m, f.loads[i]);
@@ -253,9 +259,15 @@ void rk4(const Flight<D>& f) {
 }  // namespace
 
 template <int D>
-void fly(const Flight<D>& flight, Integrator integrator) {
+void fly(const Flight<D>& flight, Integrator integrator, Scheduler* scheduler) {
     if (flight.bodies.empty()) return;
-    if (integrator == Integrator::semi_implicit_euler) return semi_implicit_euler(flight);
+    if (integrator == Integrator::semi_implicit_euler) {
+        constexpr std::size_t worth_a_worker = 128;
+        return run_range(scheduler, flight.bodies.size(), worth_a_worker,
+                         [&](std::size_t begin, std::size_t end) {
+                             semi_implicit_euler(flight, flight.bodies.subspan(begin, end - begin));
+                         });
+    }
     decay_half(flight);
     switch (integrator) {
         case Integrator::explicit_euler:
@@ -286,7 +298,7 @@ Vec3 coasting_spin<3>(const BodyState<3>& state, const BodyMass<3>& mass, double
 
 template struct LoadModel<2>;
 template struct LoadModel<3>;
-template void fly(const Flight<2>&, Integrator);
-template void fly(const Flight<3>&, Integrator);
+template void fly(const Flight<2>&, Integrator, Scheduler*);
+template void fly(const Flight<3>&, Integrator, Scheduler*);
 
 }  // namespace carom::detail

@@ -21,7 +21,14 @@ struct LoadModel {
 
     /// Writes force and torque on the bodies at `time` into `loads`, by body index; those of water as they
     /// shall act through a step of the length given, or at this moment (see `add_buoyancy`).
-    void sum(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step = 0) const;
+    void sum(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step = 0) const {
+        begin(view.masses, 0, bodies.size(), loads);
+        add(view, time, loads, step);
+    }
+    /// The two parts of `sum`: gravity and the user's forces, for a stretch of `bodies`; and all others.
+    void begin(std::span<const BodyMass<D>> masses, std::size_t from, std::size_t to,
+               std::span<Load<D>> loads) const;
+    void add(const BodyView<D>& view, double time, std::span<Load<D>> loads, double step) const;
 };
 
 /// The bodies that nothing constrains in this step, and what moves them.
@@ -38,9 +45,10 @@ struct Flight {
 };
 
 /// Moves the bodies through the step by the integrator. Rotation in space keeps the angular momentum
-/// whatever the integrator. The order in which the bodies are listed does not matter.
+/// whatever the integrator. The order in which the bodies are listed does not matter. Without a scheduler all
+/// is done by this thread.
 template <int D>
-void fly(const Flight<D>& flight, Integrator integrator);
+void fly(const Flight<D>& flight, Integrator integrator, Scheduler* scheduler = nullptr);
 
 /// Angular velocity after `step` seconds of torque-free rotation.
 template <int D>

@@ -3,7 +3,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "carom/world.hpp"
 
 namespace carom::io {
 
@@ -26,7 +29,13 @@ struct RunSummary {
     double ms_per_step_worst = 0;
     double energy_start = 0, energy_end = 0;  ///< J
     std::uint64_t hash = 0;
+    int awake = 0;                                       ///< dynamic bodies at the end
+    std::vector<std::pair<std::string, int>> why_awake;  ///< how many of them for which reason
 };
+
+/// What keeps the bodies of a world awake: each reason that there is, and how many bodies it holds for.
+template <int D>
+std::vector<std::pair<std::string, int>> reasons_awake(const World<D>& world);
 
 /// The summary in a few lines, for a person.
 std::string to_text(const RunSummary& summary);

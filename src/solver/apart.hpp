@@ -14,6 +14,7 @@ struct ApartMarks {
     Vec<D, F> normal{};                  ///< in a's axes
     F gap{};                             ///< along it
     F radius_a{}, radius_b{};            ///< of balls about the centres of mass that hold the bodies
+    F can_be_remade{};                   ///< 1 if both shapes are for lanes, which then look anew; else 0
 };
 
 /// How far pairs may go without a look.

@@ -7,6 +7,7 @@
 
 #include "core/crew.hpp"
 #include "dynamics/contact_cache.hpp"
+#include "solver/lane_shapes.hpp"
 #include "solver/lane_store.hpp"
 #include "solver/passes.hpp"
 
@@ -22,9 +23,10 @@ class ApartStore {
     ApartStore();
 
     std::size_t size() const { return contact_.size(); }
-    /// Takes up a contact whose cache tells of a gap, and returns its index.
+    /// Takes up a contact whose cache tells of a gap, or whose shapes are for lanes, and returns its index.
     std::uint32_t add(std::uint32_t contact, std::uint32_t body_a, std::uint32_t body_b,
-                      const ContactCache<D>& cache, double radius_a, double radius_b);
+                      const ContactCache<D>& cache, double radius_a, double radius_b,
+                      const LanePair<D>& shapes);
     /// The last one takes the index of the removed one; its number is returned, or `none` if it was the last.
     std::uint32_t remove(std::uint32_t index);
     /// The contact has another number now.
@@ -36,12 +38,14 @@ class ApartStore {
 
     /// The contacts that may touch now or within the step, in the order of their indices.
     std::span<const std::uint32_t> find_near(std::span<const BodyState<D>> states,
-                                             const ApartLimits<float>& limits, Scheduler* scheduler);
+                                             const LaneShapes<D>& shapes, const ApartLimits<float>& limits,
+                                             Scheduler* scheduler);
 
   private:
     const Passes<D>* passes_;
     LaneStore<ApartMarks<D, float>> marks_;
-    std::vector<std::uint32_t> body_a_, body_b_;  ///< by lane, to the end of the last block
+    std::vector<std::uint32_t> body_a_, body_b_, shape_a_,
+        shape_b_;  ///< by lane, to the end of the last block
     std::vector<std::uint32_t> contact_;
     std::vector<std::uint32_t> found_;  ///< by block, a bit a lane
     std::vector<std::uint32_t> near_;

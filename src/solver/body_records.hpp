@@ -117,14 +117,15 @@ CAROM_INLINE void scatter_way(const RecordView<3>& bodies, const std::uint32_t* 
     scatter_quads(bodies.records + 12, slots, body_stride<3>, m.turned.x, m.turned.y, m.turned.z, i.zz);
 }
 
-/// Writes everything but the locks.
-template <int D>
-CAROM_INLINE void write_record(const RecordView<D>& bodies, std::uint32_t slot, const Body<D, float>& body) {
-    scatter_velocity(bodies, &slot, body, false);
-    scatter_way(bodies, &slot, body);
+/// Writes everything but the locks; all slots have to differ.
+template <int D, class F>
+CAROM_INLINE void write_record(const RecordView<D>& bodies, const std::uint32_t* slots,
+                               const Body<D, F>& body) {
+    scatter_velocity(bodies, slots, body, false);
+    scatter_way(bodies, slots, body);
     if constexpr (D == 3) {
-        const Symmetric3<float>& i = body.weight.inertia;
-        scatter_quads(bodies.records + 16, &slot, body_stride<3>, i.xy, i.xz, i.yz, 0.0f);
+        const Symmetric3<F>& i = body.weight.inertia;
+        scatter_quads(bodies.records + 16, slots, body_stride<3>, i.xy, i.xz, i.yz, F(0));
     }
 }
 

@@ -220,10 +220,10 @@ void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
             marks.points[k].feature = lane_feature(record.points[k].feature);
         }
     }
-    const bool for_lanes = carrying && carrying->can_be_remade();
-    marks.can_be_remade = for_lanes ? 1.0f : 0.0f;
-    shape_a_[index] = for_lanes ? carrying->shape_a : LaneShapes<D>::none;
-    shape_b_[index] = for_lanes ? carrying->shape_b : LaneShapes<D>::none;
+    const LanePair<D> shapes = carrying ? carrying->shapes : LanePair<D>{};
+    marks.can_be_remade = shapes ? 1.0f : 0.0f;
+    shape_a_[index] = shapes.a;
+    shape_b_[index] = shapes.b;
     marks.restitution = record.restitution;
     marks.touching = record.touching ? 1.0f : 0.0f;
     rows_.set(index, rows);

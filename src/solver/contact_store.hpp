@@ -22,9 +22,7 @@ struct BodyPair {
 template <int D>
 struct Carrying {
     const ContactCache<D>& cache;
-    std::uint32_t shape_a = LaneShapes<D>::none, shape_b = LaneShapes<D>::none;  ///< in `LaneShapes`
-
-    bool can_be_remade() const { return shape_a != LaneShapes<D>::none && shape_b != LaneShapes<D>::none; }
+    LanePair<D> shapes;
 };
 
 /// The contacts of one colour, from step to step. They lie in lanes without gaps: contact i is lane i mod

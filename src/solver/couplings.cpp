@@ -134,7 +134,7 @@ void Couplings<D>::push(std::span<const Effect> effects, const RecordView<D>& bo
         Body<D, float> body = gather<float>(bodies, &e.slot);
         body.motion.v += impulse * each(body.weight.mass, e.push);
         body.motion.w = body.motion.w + impulse * (body.weight.inertia * e.twist);
-        write_record(bodies, e.slot, body);
+        write_record(bodies, &e.slot, body);
     }
 }
 
@@ -145,7 +145,7 @@ void Couplings<D>::shift(const View& view, const RecordView<D>& bodies, float im
         Body<D, float> body = gather<float>(bodies, &e.slot);
         body.motion.moved += impulse * each(body.weight.mass, e.push);
         body.motion.turned = body.motion.turned + impulse * (body.weight.inertia * e.twist);
-        write_record(bodies, e.slot, body);
+        write_record(bodies, &e.slot, body);
     }
 }
 

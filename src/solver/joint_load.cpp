@@ -277,12 +277,22 @@ struct Load {
     static constexpr std::size_t kept = sizeof(Rows::kept) / sizeof(float);
     static_assert(kept <= most_kept && sizeof(Rows) % sizeof(float) == 0);
 
-    static void load(JointRecord<D>& joint, const JointPose<D>& pose, std::span<const BodyState<D>> states,
-                     std::span<const BodyMass<D>> masses, double h, float* to, std::size_t stride) {
+    static constexpr std::size_t of_wrench = sizeof(Wrench<D, float>) / sizeof(float);
+    static constexpr std::size_t taken = kept + 2 * of_wrench;
+
+    static void take(const JointRecord<D>& joint, float* to, std::size_t stride) {
         Rows rows;
         std::memcpy(static_cast<void*>(&rows.kept), joint.kept.data(), kept * sizeof(float));
         rows.wrench = joint.wrench;
         rows.before = joint.before;
+        std::array<float, fields> all;
+        std::memcpy(all.data(), &rows, sizeof rows);
+        for (std::size_t f = 0; f < taken; ++f) to[f * stride] = all[f];
+    }
+
+    static void load(JointRecord<D>& joint, const JointPose<D>& pose, std::span<const BodyState<D>> states,
+                     std::span<const BodyMass<D>> masses, double h, float* to, std::size_t stride) {
+        Rows rows;
         if constexpr (has_anchors(L))
             rows.anchors = {narrow<float>(pose.arm_a), narrow<float>(pose.arm_b), narrow<float>(pose.gap)};
         set_linear(rows, joint, pose, h);
@@ -293,13 +303,12 @@ struct Load {
         }
         std::array<float, fields> all;
         std::memcpy(all.data(), &rows, sizeof rows);
-        for (std::size_t f = 0; f < fields; ++f) to[f * stride] = all[f];
+        for (std::size_t f = taken; f < fields; ++f) to[f * stride] = all[f];
     }
 
     static void store(JointRecord<D>& joint, const float* from, std::size_t stride) {
         std::array<float, fields> all{};
-        constexpr std::size_t wanted = kept + 3 * sizeof(Wrench<D, float>) / sizeof(float);
-        for (std::size_t f = 0; f < wanted; ++f) all[f] = from[f * stride];
+        for (std::size_t f = 0; f < taken + of_wrench; ++f) all[f] = from[f * stride];
         Rows rows;
         std::memcpy(static_cast<void*>(&rows), all.data(), sizeof rows);
         std::memcpy(joint.kept.data(), &rows.kept, kept * sizeof(float));
@@ -341,7 +350,7 @@ double size_of(const Angular<D>& angle) {
 
 template <int D, std::size_t... i>
 constexpr std::array<JointLoader<D>, layouts<D>.size()> make_loaders(std::index_sequence<i...>) {
-    return {JointLoader<D>{Load<D, layouts<D>[i]>::fields, Load<D, layouts<D>[i]>::kept,
+    return {JointLoader<D>{Load<D, layouts<D>[i]>::fields, Load<D, layouts<D>[i]>::take,
                            Load<D, layouts<D>[i]>::load, Load<D, layouts<D>[i]>::store}...};
 }
 

@@ -70,13 +70,17 @@ DriveBase<D, float> drive_row(DriveSettings& drive, const JointRecord<D>& joint,
 template <int D>
 Angular<D> turn_between(const JointPose<D>& pose);
 
-/// The rows of a joint as floats: `fields` of them, of which the first are kept from step to step.
+/// The rows of a joint as floats, one every `stride`: `fields` of them, of which the first are impulses that
+/// are kept from step to step.
 template <int D>
 struct JointLoader {
-    std::size_t fields, kept;
-    /// Writes the rows, one float every `stride`.
+    std::size_t fields;
+    /// Writes the kept impulses.
+    void (*take)(const JointRecord<D>& joint, float* to, std::size_t stride);
+    /// Writes all others.
     void (*load)(JointRecord<D>& joint, const JointPose<D>& pose, std::span<const BodyState<D>> states,
                  std::span<const BodyMass<D>> masses, double h, float* to, std::size_t stride);
+    /// Gives the record its impulses.
     void (*store)(JointRecord<D>& joint, const float* from, std::size_t stride);
 };
 

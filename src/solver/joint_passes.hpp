@@ -19,9 +19,23 @@ struct JointSpan {
     std::size_t blocks = 0;
 };
 
+/// Where joints are to be found that have nothing but two anchors.
+template <int D>
+struct JointSites {
+    static constexpr std::size_t anchor_stride = 2 * D;
+
+    const double* states = nullptr;  ///< of all bodies
+    const std::uint32_t* body_a = nullptr;
+    const std::uint32_t* body_b = nullptr;  ///< one a lane: indices in the world
+    const double* anchors = nullptr;  ///< both of a joint: from the centres of mass, in the bodies' axes
+};
+
 /// The passes over joints of one layout.
 template <int D>
 struct JointProgram {
+    /// Brings the rows to where the bodies are at the start of a step. Nothing for layouts of which that asks
+    /// for more than places.
+    void (*place)(const JointSpan&, const JointSites<D>&);
     /// Applies the kept impulses, as they are in the rows.
     void (*start)(const JointSpan&, const RecordView<D>&);
     void (*solve)(const JointSpan&, const RecordView<D>&, const JointStep<float>&);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <utility>
 
 #include "solver/joint_parts.hpp"
@@ -11,6 +12,8 @@ namespace carom::detail {
 template <int D, class F>
 struct JointPassesIn {
     static constexpr int width = lane_count<F>;
+    static constexpr std::array<std::uint32_t, 16> lane_numbers{0, 1, 2,  3,  4,  5,  6,  7,
+                                                                8, 9, 10, 11, 12, 13, 14, 15};
 
     /// Writes how far the bodies have come, of those that can be pushed.
     CAROM_INLINE static void scatter_moved(const RecordView<D>& bodies, const std::uint32_t* slots,
@@ -51,6 +54,43 @@ struct JointPassesIn {
         }
     }
 
+    CAROM_INLINE static void gather_anchors(const double* from, Vec<2, Wide<F>>& a, Vec<2, Wide<F>>& b) {
+        gather_pairs(from, lane_numbers.data(), 4, a.x, a.y);
+        gather_pairs(from + 2, lane_numbers.data(), 4, b.x, b.y);
+    }
+    CAROM_INLINE static void gather_anchors(const double* from, Vec<3, Wide<F>>& a, Vec<3, Wide<F>>& b) {
+        gather_pairs(from, lane_numbers.data(), 6, a.x, a.y);
+        gather_pairs(from + 2, lane_numbers.data(), 6, a.z, b.x);
+        gather_pairs(from + 4, lane_numbers.data(), 6, b.y, b.z);
+    }
+    CAROM_INLINE static Vec<D, F> rounded(const Vec<D, Wide<F>>& v) {
+        Vec<D, F> r;
+        for (int i = 0; i < D; ++i) r[i] = F(v[i]);
+        return r;
+    }
+
+    /// In double precision, like `pose_of`.
+    template <Layout L>
+    static void place(const JointSpan& span, const JointSites<D>& sites) {
+        auto* rows = reinterpret_cast<JointRows<D, F, L>*>(span.rows);
+        const PoseView<D> poses{sites.states};
+        for (std::size_t k = 0; k < span.blocks; ++k) {
+            const Pose<D, F> a = gather_pose<F>(poses, sites.body_a + k * width),
+                             b = gather_pose<F>(poses, sites.body_b + k * width);
+            Vec<D, Wide<F>> anchor_a, anchor_b;
+            gather_anchors(sites.anchors + k * width * JointSites<D>::anchor_stride, anchor_a, anchor_b);
+            const Vec<D, Wide<F>> arm_a = rotate(a.rotation, anchor_a), arm_b = rotate(b.rotation, anchor_b);
+            rows[k].total = {};
+            rows[k].anchors = {rounded(arm_a), rounded(arm_b),
+                               rounded(Vec<D, Wide<F>>((b.position - a.position) + (arm_b - arm_a)))};
+        }
+    }
+    template <Layout L>
+    static constexpr auto placing() -> void (*)(const JointSpan&, const JointSites<D>&) {
+        if constexpr (has_anchors_alone(L)) return place<L>;
+        return nullptr;
+    }
+
     template <Layout L>
     static void start(const JointSpan& span, const RecordView<D>& bodies) {
         using Rows = JointRows<D, F, L>;
@@ -73,7 +113,7 @@ struct JointPassesIn {
     template <std::size_t... i>
     static constexpr JointPrograms<D> make(std::index_sequence<i...>) {
         return {width,
-                {JointProgram<D>{start<layouts<D>[i]>, solve<true, layouts<D>[i]>,
+                {JointProgram<D>{placing<layouts<D>[i]>(), start<layouts<D>[i]>, solve<true, layouts<D>[i]>,
                                  solve<false, layouts<D>[i]>}...}};
     }
     static constexpr JointPrograms<D> all = make(std::make_index_sequence<layouts<D>.size()>());

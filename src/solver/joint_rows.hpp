@@ -140,6 +140,11 @@ constexpr bool has_anchors(const Layout& l) {
     return any;
 }
 
+/// Is there nothing to a joint but that its anchors meet?
+constexpr bool has_anchors_alone(const Layout& l) {
+    return l.linear == LinearPart::point && l.angular == AngularPart::none && l.drive_count == 0;
+}
+
 /// A joint. All members are lanes.
 template <int D, class F, Layout L>
 struct JointRows {

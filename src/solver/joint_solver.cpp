@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "simd/width.hpp"
 #include "solver/direct.hpp"
@@ -23,18 +24,44 @@ bool JointSolver<D>::is_small() const {
 
 template <int D>
 void JointSolver<D>::plan(const JointInput<D>& input) {
+    couplings_.plan(input);
+    direct_->set_step(input.substep);
+    step_ = joint_step(input.substep);
+    is_fresh_ = is_stale_;
+    if (!is_stale_) return;
+    let_go(input.joints);
+    is_stale_ = false;
     batches_.clear();
     joint_.clear();
-    couplings_.plan(input);
+    place_of_.assign(input.joints.size(), none);
     if (groups_->plan(input)) direct_->plan(input, groups_->direct(), groups_->starts());
-    direct_->set_step(input.substep);
     if (groups_->iterative().empty()) return;
     JointInput<D> rest = input;
     rest.active = groups_->iterative();
-    step_ = joint_step(input.substep);
     wide_ = &joint_programs<D>(lane_width());
     colour(rest);
     make_batches(rest);
+    holds_ = true;
+}
+
+template <int D>
+void JointSolver<D>::let_go(std::span<JointRecord<D>> joints) {
+    if (!holds_) return;
+    for (const std::uint32_t joint : joint_) {
+        if (joint != none) read(joint, joints[joint]);
+    }
+    holds_ = false;
+    is_stale_ = true;
+}
+
+template <int D>
+void JointSolver<D>::read(std::uint32_t joint, JointRecord<D>& record) const {
+    if (!holds_ || joint >= place_of_.size() || place_of_[joint] == none) return;
+    const std::size_t place = place_of_[joint];
+    const Batch& batch = *std::prev(std::ranges::upper_bound(batches_, place, {}, &Batch::first_place));
+    const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
+    const std::size_t i = place - batch.first_place, width = batch.width;
+    loader.store(record, rows(batch) + i / width * loader.fields * width + i % width, width);
 }
 
 template <int D>
@@ -107,34 +134,74 @@ void JointSolver<D>::make_batches(const JointInput<D>& input) {
     joint_.assign(places, none);
     a_.assign(places, BodySlots::still);
     b_.assign(places, BodySlots::still);
+    body_a_.assign(places, 0);
+    body_b_.assign(places, 0);
+    constexpr std::size_t stride = JointSites<D>::anchor_stride;
+    anchors_.assign(places * stride, 0);
     some_fixed_.assign(blocks, 0);
+    in_world_.assign(blocks, 0);
     // Lanes without a joint are to hold zeros.
     lines_.assign((floats + 15) / 16, Line{});
     for (std::size_t i = 0; i < input.active.size(); ++i) {
         const JointRecord<D>& joint = input.joints[input.active[i]];
         const std::size_t place = next[colour_[i]][joint.layout]++;
+        place_of_[input.active[i]] = static_cast<std::uint32_t>(place);
         joint_[place] = input.active[i];
         a_[place] = input.slot_of(joint.body_a);
         b_[place] = input.slot_of(joint.body_b);
+        body_b_[place] = joint.body_b;
+        const auto set_anchor = [&](std::size_t from, std::uint32_t body, const Vec<D>& anchor) {
+            const Vec<D> arm = anchor - input.masses[body].center;
+            for (int k = 0; k < D; ++k) anchors_[place * stride + from + k] = arm[k];
+        };
+        set_anchor(D, joint.body_b, joint.anchor_b);
+        if (joint.body_a == no_body) continue;
+        body_a_[place] = joint.body_a;
+        set_anchor(0, joint.body_a, joint.anchor_a);
+    }
+    for (const Batch& batch : batches_) mark_blocks(batch, input);
+}
+
+/// What lanes of the blocks of a batch have in common.
+template <int D>
+void JointSolver<D>::mark_blocks(const Batch& batch, const JointInput<D>& input) {
+    for (std::size_t i = 0; i < batch.blocks * batch.width; ++i) {
+        const std::size_t place = batch.first_place + i, block = batch.first_block + i / batch.width;
+        const std::uint32_t first = input.bodies.first_movable;
+        some_fixed_[block] |= a_[place] < first || b_[place] < first ? 1 : 0;
+        in_world_[block] |= joint_[place] != none && input.joints[joint_[place]].body_a == no_body ? 1 : 0;
     }
 }
 
+/// Brings rows to where the bodies are at the start of the step.
 template <int D>
 void JointSolver<D>::fill(const JointInput<D>& input, const Batch& batch, const Part& part) {
+    const auto place = program(batch).place;
+    for (std::size_t block = part.begin; block < part.end; ++block) {
+        if (!place || is_fresh_ || in_world_[batch.first_block + block]) {
+            load(input, batch, block);
+            continue;
+        }
+        const std::size_t first = batch.first_place + block * batch.width;
+        place(span(batch, {block, block + 1}),
+              {reinterpret_cast<const double*>(input.states.data()), body_a_.data() + first,
+               body_b_.data() + first, anchors_.data() + first * JointSites<D>::anchor_stride});
+    }
+}
+
+/// The same for one block, joint by joint.
+template <int D>
+void JointSolver<D>::load(const JointInput<D>& input, const Batch& batch, std::size_t block) {
     const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
     const bool has_drives = layouts<D>[batch.layout].drive_count > 0;
-    for (std::size_t block = part.begin; block < part.end; ++block) {
-        float* to = rows(batch) + block * loader.fields * batch.width;
-        for (std::size_t lane = 0; lane < batch.width; ++lane) {
-            const std::size_t place = batch.first_place + block * batch.width + lane;
-            const bool fixed =
-                a_[place] < input.bodies.first_movable || b_[place] < input.bodies.first_movable;
-            some_fixed_[batch.first_block + block] |= fixed ? 1 : 0;
-            if (joint_[place] == none) continue;
-            JointRecord<D>& joint = input.joints[joint_[place]];
-            loader.load(joint, pose_of<D>(joint, input.states, input.masses, has_drives), input.states,
-                        input.masses, input.substep, to + lane, batch.width);
-        }
+    float* to = rows(batch) + block * loader.fields * batch.width;
+    for (std::size_t lane = 0; lane < batch.width; ++lane) {
+        const std::uint32_t i = joint_[batch.first_place + block * batch.width + lane];
+        if (i == none) continue;
+        JointRecord<D>& joint = input.joints[i];
+        if (is_fresh_) loader.take(joint, to + lane, batch.width);
+        loader.load(joint, pose_of<D>(joint, input.states, input.masses, has_drives), input.states,
+                    input.masses, input.substep, to + lane, batch.width);
     }
 }
 
@@ -178,16 +245,6 @@ template <int D>
 void JointSolver<D>::store(const JointInput<D>& input, const Crew& crew) const {
     if (crew.is_first()) couplings_.store(input);
     direct_->store(input, crew);
-    each_share(crew, false, [&](const Batch& batch, const Part& part) {
-        const JointLoader<D>& loader = joint_loaders<D>()[batch.layout];
-        const std::size_t width = batch.width;
-        for (std::size_t i = part.begin * width; i < part.end * width; ++i) {
-            const std::uint32_t joint = joint_[batch.first_place + i];
-            if (joint == none) continue;
-            loader.store(input.joints[joint], rows(batch) + i / width * loader.fields * width + i % width,
-                         width);
-        }
-    });
 }
 
 template class JointSolver<2>;

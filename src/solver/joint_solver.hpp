@@ -26,8 +26,16 @@ class JointSolver {
     JointSolver();
     ~JointSolver();
 
-    /// Takes the joints up: colours them and makes room for their rows.
+    /// Takes the joints up. When they are not those of the last step, colours them and makes room for their
+    /// rows; otherwise rows keep their impulses, which the records do not have then.
     void plan(const JointInput<D>& input);
+    /// The next step may have other joints, or joints of other bodies, masses, limits or anchors.
+    void expect_others() { is_stale_ = true; }
+    bool expects_others() const { return is_stale_; }
+    /// Gives the records their impulses, which has to be done before any other takes the place of one.
+    void let_go(std::span<JointRecord<D>> joints);
+    /// Completes the record of this joint by its impulses.
+    void read(std::uint32_t joint, JointRecord<D>& record) const;
     /// So few that they are not worth several workers.
     bool is_small() const;
 
@@ -38,7 +46,7 @@ class JointSolver {
     /// One pass at the start of a sub-step, and one after positions were integrated.
     void solve(const RecordView<D>& bodies, const Crew& crew);
     void relax(const RecordView<D>& bodies, const Crew& crew);
-    /// Gives the records their impulses.
+    /// Gives the records of couplings, and of joints that are solved directly, their impulses.
     void store(const JointInput<D>& input, const Crew& crew) const;
 
   private:
@@ -60,11 +68,13 @@ class JointSolver {
 
     void colour(const JointInput<D>& input);
     void make_batches(const JointInput<D>& input);
+    void mark_blocks(const Batch& batch, const JointInput<D>& input);
     /// `visit(batch, blocks)` for a share of the blocks of each batch. Where bodies are written the workers
     /// wait for one another after each colour, and the first one does the overflow alone.
     template <class Visit>
     void each_share(const Crew& crew, bool writes_bodies, Visit&& visit) const;
     void fill(const JointInput<D>& input, const Batch& batch, const Part& part);
+    void load(const JointInput<D>& input, const Batch& batch, std::size_t block);
     const JointProgram<D>& program(const Batch& batch) const;
     JointSpan span(const Batch& batch, const Part& part);
     float* rows(const Batch& batch) { return lines_[0].floats.data() + batch.first_float; }
@@ -72,11 +82,18 @@ class JointSolver {
 
     JointStep<float> step_{};
     const JointPrograms<D>* wide_ = nullptr;
-    std::vector<std::uint64_t> taken_;          ///< by slot: colours of its joints
-    std::vector<std::uint8_t> colour_;          ///< by active joint
-    std::vector<Batch> batches_;                ///< in the order in which they are solved
-    std::vector<std::uint32_t> joint_, a_, b_;  ///< by place: joint (or none) and slots of its bodies
-    std::vector<std::uint8_t> some_fixed_;      ///< by block
+    std::vector<std::uint64_t> taken_;            ///< by slot: colours of its joints
+    std::vector<std::uint8_t> colour_;            ///< by active joint
+    std::vector<Batch> batches_;                  ///< in the order in which they are solved
+    std::vector<std::uint32_t> joint_, a_, b_;    ///< by place: joint (or none) and slots of its bodies
+    std::vector<std::uint32_t> body_a_, body_b_;  ///< by place: the bodies, by their indices in the world
+    std::vector<double> anchors_;                 ///< by place: both, see `JointSites`
+    std::vector<std::uint8_t> some_fixed_;        ///< by block
+    std::vector<std::uint8_t> in_world_;          ///< by block: has any joint an anchor in the world?
+    std::vector<std::uint32_t> place_of_;         ///< by joint, or `none`
+    bool is_stale_ = true;                        ///< are joints to be taken up anew?
+    bool is_fresh_ = false;                       ///< have they been, and have rows no impulses yet?
+    bool holds_ = false;                          ///< have rows impulses that the records do not have?
     std::vector<Line> lines_;
     Couplings<D> couplings_;
     std::unique_ptr<JointGroups<D>> groups_;

@@ -49,4 +49,13 @@ class LaneShapes<3> {
     const float* data() const { return nullptr; }
 };
 
+/// The two shapes of a contact in `LaneShapes`.
+template <int D>
+struct LanePair {
+    std::uint32_t a = LaneShapes<D>::none, b = LaneShapes<D>::none;
+
+    /// Can they be collided in lanes?
+    explicit operator bool() const { return a != LaneShapes<D>::none && b != LaneShapes<D>::none; }
+};
+
 }  // namespace carom::detail

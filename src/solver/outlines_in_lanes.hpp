@@ -271,6 +271,12 @@ CAROM_INLINE LaneProximity<F> proximity(const LaneOutline<F>& a, const LaneOutli
     return selected(either(apart, either(seen, balls)), near, deep);
 }
 
+/// How far the cores are apart, or deep in each other, and along which axis.
+template <class F>
+CAROM_INLINE LaneProximity<F> proximity(const LaneOutline<F>& a, const LaneOutline<F>& b) {
+    return proximity(a, b, best_facing(a, b), best_facing(b, a));
+}
+
 /// A manifold a lane, in the frame of a's centre of mass.
 template <class F>
 struct LaneManifold {

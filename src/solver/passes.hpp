@@ -6,6 +6,7 @@
 #include "core/crew.hpp"
 #include "solver/apart.hpp"
 #include "solver/body_records.hpp"
+#include "solver/body_source.hpp"
 #include "solver/drive.hpp"
 #include "solver/marks.hpp"
 #include "solver/prepare.hpp"
@@ -48,9 +49,11 @@ struct BodySpan {
 
 /// Blocks of pairs that do not touch.
 struct ApartSpan {
-    const float* marks = nullptr;  ///< of `ApartMarks<D, F>`
+    float* marks = nullptr;  ///< of `ApartMarks<D, F>`
     const std::uint32_t* body_a = nullptr;
     const std::uint32_t* body_b = nullptr;
+    const std::uint32_t* shape_a = nullptr;  ///< in `LaneShapes`
+    const std::uint32_t* shape_b = nullptr;
     std::uint32_t* found = nullptr;
     std::size_t blocks = 0;
 };
@@ -65,8 +68,10 @@ struct Passes {
     /// Carries the points along with the bodies; makes the manifolds anew for which that does not do, as far
     /// as their shapes are among those `for_lanes`; and finds the contacts that are left.
     void (*refresh)(const BlockSpan<D>&, const PoseView<D>&, const float* for_lanes, float reach);
-    /// Finds the pairs that may touch.
-    void (*find_near)(const ApartSpan&, const PoseView<D>&, const ApartLimits<float>&);
+    /// Finds the pairs that may touch. Where what held them apart does so no more, it looks for another axis
+    /// that does, if their shapes are among those `for_lanes`.
+    void (*find_near)(const ApartSpan&, const PoseView<D>&, const float* for_lanes,
+                      const ApartLimits<float>&);
     /// Effective masses; applies the impulses that are kept; finds the contacts that have none.
     void (*prepare)(const BlockSpan<D>&, const RecordView<D>&);
     void (*warm_start)(const BlockSpan<D>&, const RecordView<D>&);
@@ -84,6 +89,8 @@ struct Passes {
     void (*touch)(const BlockSpan<D>&);
 
     // Over bodies.
+    /// Fills records and drives from the bodies' states.
+    void (*load)(const BodySpan<D>&, const BodySource<D>&);
     /// Takes the velocities as what the kept impulses make, and leaves what `look_ahead` wants.
     void (*begin_warm)(const BodySpan<D>&, float h);
     /// Puts the velocities of the start back, ready for the first sub-step.

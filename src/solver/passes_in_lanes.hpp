@@ -60,13 +60,27 @@ struct PassesIn {
         }
     }
 
-    static void find_near(const ApartSpan& span, const PoseView<D>& poses, const ApartLimits<float>& limits) {
-        const auto* marks = reinterpret_cast<const ApartMarks<D, F>*>(span.marks);
+    static void find_near(const ApartSpan& span, const PoseView<D>& poses, const float* for_lanes,
+                          const ApartLimits<float>& limits) {
+        auto* marks = reinterpret_cast<ApartMarks<D, F>*>(span.marks);
         const ApartLimits<F> wide{F(limits.reach), F(limits.slow_way), F(limits.dt), F(limits.falling)};
         for (std::size_t k = 0; k < span.blocks; ++k) {
-            const std::uint32_t *a = span.body_a + k * width, *b = span.body_b + k * width;
-            span.found[k] = bits_of(may_touch(marks[k], gather_pose<F>(poses, a), gather_pose<F>(poses, b),
-                                              gather_speeds<F>(poses, a), gather_speeds<F>(poses, b), wide));
+            const std::uint32_t *body_a = span.body_a + k * width, *body_b = span.body_b + k * width;
+            const Pose<D, F> a = gather_pose<F>(poses, body_a), b = gather_pose<F>(poses, body_b);
+            const Speeds<D, F> speed_a = gather_speeds<F>(poses, body_a),
+                               speed_b = gather_speeds<F>(poses, body_b);
+            auto found = may_touch(marks[k], a, b, speed_a, speed_b, wide);
+            if constexpr (D == 2) {
+                const auto wanted = both(found, marks[k].can_be_remade > F(0));
+                if (any(wanted)) {
+                    LaneOutline<F> of_a, of_b;
+                    gather_outline(for_lanes, span.shape_a + k * width, of_a);
+                    gather_outline(for_lanes, span.shape_b + k * width, of_b);
+                    look_again(marks[k], a, b, of_a, of_b, wanted, wide.reach);
+                    found = both(found, may_touch(marks[k], a, b, speed_a, speed_b, wide));
+                }
+            }
+            span.found[k] = bits_of(found);
         }
     }
 
@@ -152,6 +166,19 @@ struct PassesIn {
         }
     }
 
+    static void load(const BodySpan<D>& span, const BodySource<D>& source) {
+        Drive<D, F>* drives = reinterpret_cast<Drive<D, F>*>(span.drives);
+        std::uint32_t slots[width];
+        for (std::size_t k = span.blocks.begin; k < span.blocks.end; ++k) {
+            for (int lane = 0; lane < width; ++lane)
+                slots[lane] = static_cast<std::uint32_t>(k * width + lane);
+            const auto wanted = load_lanes<F>(source.present + k * width) > F(0.5f);
+            Body<D, F> body;
+            take_up(gather_plain<F>(source, source.bodies + k * width), wanted, body, drives[k]);
+            write_record(span.view, slots, body);
+        }
+    }
+
     static void begin_warm(const BodySpan<D>& span, float h) {
         each_body(span, true, true, [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
             detail::begin_warm(m, d, F(h));
@@ -202,6 +229,7 @@ struct PassesIn {
                                    find_pushing,
                                    tally,
                                    touch,
+                                   load,
                                    begin_warm,
                                    begin,
                                    integrate_velocities,

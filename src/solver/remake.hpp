@@ -2,6 +2,7 @@
 
 #include "dynamics/contact.hpp"
 #include "dynamics/contact_cache.hpp"
+#include "solver/apart.hpp"
 #include "solver/marks.hpp"
 #include "solver/outlines_in_lanes.hpp"
 
@@ -53,23 +54,63 @@ CAROM_INLINE auto carried_impulses(const ContactRows<2, F>& rows, const ContactM
     return either(found[0], found[1]);
 }
 
+/// Carries the outline from its own frame into another.
+template <class F>
+CAROM_INLINE void put(LaneOutline<F>& outline, const Vec<2, F>& place, const Rotation<2, F>& turn) {
+    for (int i = 0; i < outline.n; ++i) {
+        outline.corners[i] = place + rotate(turn, outline.corners[i]);
+        outline.normals[i] = rotate(turn, outline.normals[i]);
+    }
+}
+
+/// How b lies relative to a.
+template <class F>
+struct LaneRelative {
+    Vec<2, Wide<F>> place{};
+    Rotation<2, Wide<F>> turn{};
+
+    CAROM_INLINE LaneRelative(const Pose<2, F>& a, const Pose<2, F>& b)
+        : place(unrotate(a.rotation, Vec<2, Wide<F>>(b.position - a.position))),
+          turn(inverse(a.rotation) * b.rotation) {}
+
+    /// As what the marks have been taken at, in the lanes of the mask.
+    template <class Marks, class Mask>
+    CAROM_INLINE void keep(Marks& marks, Mask mask) const {
+        split(place.x, marks.place.x, marks.place_rest.x, mask);
+        split(place.y, marks.place.y, marks.place_rest.y, mask);
+        split(turn.c, marks.turn.c, marks.turn_rest.c, mask);
+        split(turn.s, marks.turn.s, marks.turn_rest.s, mask);
+    }
+};
+
+/// Looks for what holds the `wanted` pairs apart now. Those that are within reach of each other keep what
+/// they had. b's outline comes in its own frame.
+template <class F, class Mask>
+CAROM_INLINE void look_again(ApartMarks<2, F>& marks, const Pose<2, F>& a, const Pose<2, F>& b,
+                             const LaneOutline<F>& outline_a, LaneOutline<F>& outline_b, Mask wanted,
+                             F reach) {
+    const LaneRelative<F> relative(a, b);
+    put(outline_b, {F(relative.place.x), F(relative.place.y)}, narrowed<F>(relative.turn));
+    const LaneProximity<F> near = proximity(outline_a, outline_b);
+    const F gap = near.distance - outline_a.radius - outline_b.radius;
+    const Mask apart = both(wanted, gap > reach);
+    relative.keep(marks, apart);
+    marks.normal = selected(apart, near.axis, marks.normal);
+    marks.gap = select(apart, gap, marks.gap);
+}
+
 /// Makes the manifold of the `wanted` lanes anew, for bodies that are at `a` and `b`. The result tells the
 /// lanes in which that was done: those that have points within reach. b's outline comes in its own frame.
 template <class F, class Mask>
 CAROM_INLINE Mask remake(ContactRows<2, F>& rows, ContactMarks<2, F>& marks, const Pose<2, F>& a,
                          const Pose<2, F>& b, const LaneOutline<F>& outline_a, LaneOutline<F>& outline_b,
                          Mask wanted, F reach) {
-    using W = Wide<F>;
-    const Vec<2, W> place = unrotate(a.rotation, Vec<2, W>(b.position - a.position));
-    const Rotation<2, W> turn = inverse(a.rotation) * b.rotation;
-    const Rotation<2, F> axes = narrowed<F>(a.rotation), axes_b = narrowed<F>(turn);
-    const Vec<2, F> b_in_a{F(place.x), F(place.y)};
-    const Vec<2, W> apart = b.position - a.position;
+    const LaneRelative<F> relative(a, b);
+    const Rotation<2, F> axes = narrowed<F>(a.rotation), axes_b = narrowed<F>(relative.turn);
+    const Vec<2, F> b_in_a{F(relative.place.x), F(relative.place.y)};
+    const Vec<2, Wide<F>> apart = b.position - a.position;
     const Vec<2, F> between{F(apart.x), F(apart.y)};
-    for (int i = 0; i < outline_b.n; ++i) {
-        outline_b.corners[i] = b_in_a + rotate(axes_b, outline_b.corners[i]);
-        outline_b.normals[i] = rotate(axes_b, outline_b.normals[i]);
-    }
+    put(outline_b, b_in_a, axes_b);
     const F radius = minimum(outline_a.body_radius, outline_b.body_radius);
     const F full_way = minimum(F(static_cast<float>(reuse_share)) * radius, F(static_cast<float>(reuse_way)));
     const LaneManifold<F> m = collide(outline_a, outline_b, reach + full_way);
@@ -90,10 +131,7 @@ CAROM_INLINE Mask remake(ContactRows<2, F>& rows, ContactMarks<2, F>& marks, con
     rows.friction_impulse[0] = select(done, kept_friction, rows.friction_impulse[0]);
     rows.rolling_impulse = select(both(done, !goes_on), F(0), rows.rolling_impulse);
 
-    split(place.x, marks.place.x, marks.place_rest.x, done);
-    split(place.y, marks.place.y, marks.place_rest.y, done);
-    split(turn.c, marks.turn.c, marks.turn_rest.c, done);
-    split(turn.s, marks.turn.s, marks.turn_rest.s, done);
+    relative.keep(marks, done);
     const auto of_b = m.is_of_b > F(0.5f);
     marks.normal = selected(done, selected(of_b, unrotate(axes_b, m.normal), m.normal), marks.normal);
     marks.is_of_b = select(done, m.is_of_b, marks.is_of_b);

@@ -26,7 +26,7 @@ void Solver<D>::expect_impacts(const SolverInput<D>& input) {
     impacts_.clear();
     stores_.clear();
     some_impacts_ = false;
-    if (std::ranges::none_of(sections_, [](const Section& s) { return s.contacts.some_bounce(); })) return;
+    if (std::ranges::none_of(used_, [](const Section* s) { return s->contacts.some_bounce(); })) return;
     if (!input.impacts_together) {
         note_impacts();
         find_impacts();

@@ -11,14 +11,14 @@ namespace carom::detail {
 constexpr float blow_speed = 0.25f;  // m/s
 
 /// Finds the contacts to be settled: those that carry their first impulse, and those that were hit in the
-/// sub-step before. Are there any?
+/// sub-step before.
 template <int D>
-bool Solver<D>::find_struck() {
-    bool some = false;
-    for (Section& s : sections_) {
+void Solver<D>::find_struck() {
+    constexpr std::size_t worth_all_workers = 512;
+    std::size_t count = 0;
+    each_used([&](Section& s) {
         s.struck.clear();
         s.begun.clear();
-        if (s.contacts.empty()) continue;
         s.struck.swap(s.hit);
         each_bit(
             s, [&](std::size_t block) { return s.waiting[block] & s.contacts.found(block); },
@@ -26,9 +26,12 @@ bool Solver<D>::find_struck() {
         for (std::size_t block = 0; block < s.contacts.blocks(); ++block)
             s.waiting[block] &= ~s.contacts.found(block);
         s.struck.insert(s.struck.end(), s.begun.begin(), s.begun.end());
-        some |= !s.struck.empty();
-    }
-    return some;
+        count += s.struck.size();
+        s.settling.clear(s.contacts.passes());
+        if (!s.struck.empty()) s.settling.append(s.struck.size());
+    });
+    some_struck_ = count > 0;
+    many_struck_ = count >= worth_all_workers;
 }
 
 /// The most that the impulse of any point changes its own speed, m/s.
@@ -46,17 +49,17 @@ float Solver<D>::speed_taken(const LaneStore<Rows>& rows, std::size_t index) {
 /// Of the contacts that began in this sub-step, those that were hit are to be settled once more.
 template <int D>
 void Solver<D>::note_blows() {
-    for (Section& s : sections_) {
+    each_used([&](Section& s) {
         for (const std::uint32_t index : s.begun) {
             if (speed_taken(s.contacts.rows(), index) > blow_speed) s.hit.push_back(index);
         }
-    }
+    });
 }
 
 /// The impulse of a blow in the last sub-step is nothing for the next step to begin with.
 template <int D>
 void Solver<D>::forget_last_blows() {
-    for (Section& s : sections_) {
+    each_used([&](Section& s) {
         for (const std::uint32_t index : s.hit) {
             Rows rows = s.contacts.rows().get(index);
             for (NormalRow<D, float>& p : rows.points) p.impulse = 0;
@@ -65,18 +68,18 @@ void Solver<D>::forget_last_blows() {
             rows.rolling_impulse = {};
             s.contacts.rows().set(index, rows);
         }
-    }
+    });
 }
 
 template <int D>
-void Solver<D>::copy_struck(Section& s) {
-    s.settling.clear(s.contacts.passes());
-    if (s.struck.empty()) return;
-    s.settling.append(s.struck.size());
-    for (std::size_t place = 0; place < s.settling.places(); ++place) {
-        std::uint8_t& traits = s.settling.traits(place / s.settling.width());
+void Solver<D>::copy_struck(Section& s, const Part& places) {
+    const std::size_t width = s.settling.width();
+    for (std::size_t place = places.begin; place < places.end; ++place) {
+        std::uint8_t& traits = s.settling.traits(place / width);
+        if (place % width == 0) traits = 0;
         if (place >= s.struck.size()) {
             s.settling.rows().set(place, {});
+            s.settling.a(place) = s.settling.b(place) = s.settling.nobody;
             traits |= some_fixed;
             continue;
         }
@@ -89,42 +92,96 @@ void Solver<D>::copy_struck(Section& s) {
 }
 
 template <int D>
-void Solver<D>::return_struck(Section& s) {
-    for (std::size_t place = 0; place < s.struck.size(); ++place)
+void Solver<D>::return_struck(Section& s, const Part& places) {
+    for (std::size_t place = places.begin; place < std::min(places.end, s.struck.size()); ++place)
         s.contacts.rows().set(s.struck[place], s.settling.rows().get(place));
+}
+
+/// `visit(section, blocks)` for a share of the copies; those of the overflow are for the first worker alone.
+/// Where bodies are written, the workers wait for one another after each colour.
+template <int D>
+template <class Visit>
+void Solver<D>::each_settling(const Crew& crew, bool writes_bodies, Visit&& visit) {
+    each_used([&](Section& s) {
+        if (s.settling.empty()) return;
+        const bool one_by_one = &s == &sections_[Colours::overflow];
+        const Part blocks =
+            one_by_one ? Part{0, crew.is_first() ? s.settling.blocks() : 0} : crew.part(s.settling.blocks());
+        if (blocks.size() > 0) visit(s, blocks);
+        if (writes_bodies) crew.meet();
+    });
 }
 
 template <int D>
 template <bool biased>
-void Solver<D>::settle_struck() {
+void Solver<D>::settle_struck(const Crew& crew) {
     constexpr int sweeps = 8;
-    for (Section& s : sections_) copy_struck(s);
+    const auto places = [](const Section& s, const Part& blocks) {
+        return Part{blocks.begin * s.settling.width(), blocks.end * s.settling.width()};
+    };
+    each_settling(crew, false, [&](Section& s, const Part& blocks) { copy_struck(s, places(s, blocks)); });
+    crew.meet();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (Section& s : sections_) {
-            if (s.settling.empty()) continue;
+        each_settling(crew, true, [&](Section& s, const Part& blocks) {
             const Passes<D>& passes = s.settling.passes();
-            (biased ? passes.solve_with_friction : passes.relax)(s.settling.span(), view_, sub_);
-        }
+            const BlockSpan<D> span = s.settling.span(blocks.begin, blocks.size());
+            (biased ? passes.solve_with_friction : passes.relax)(span, view_, sub_);
+        });
     }
-    for (Section& s : sections_) return_struck(s);
+    each_settling(crew, false, [&](Section& s, const Part& blocks) { return_struck(s, places(s, blocks)); });
+    crew.meet();
+}
+
+template <int D>
+template <bool biased>
+void Solver<D>::settle(const Crew& crew) {
+    if (many_struck_) return settle_struck<biased>(crew);
+    crew.alone([&] {
+        if (some_struck_) settle_struck<biased>(Crew());
+    });
 }
 
 template <int D>
 void Solver<D>::mark_struck_bodies() {
     for (const std::uint32_t slot : struck_slots_) is_struck_[slot] = 0;
     struck_slots_.clear();
+    struck_groups_ = 0;
     is_struck_.resize(std::max<std::size_t>(is_struck_.size(), slots_.size()), 0);
     const auto mark = [&](std::uint32_t slot) {
         if (slot < view_.first_movable || is_struck_[slot] || jointed_[slot]) return;
         is_struck_[slot] = 1;
+        struck_groups_ |= group_bit(slot);
         struck_slots_.push_back(slot);
     };
-    for (Section& s : sections_) {
+    each_used([&](Section& s) {
         for (const std::uint32_t place : s.struck) {
             mark(s.contacts.a(place));
             mark(s.contacts.b(place));
         }
-    }
+    });
+}
+
+/// Finds the blocks with contacts of struck bodies.
+template <int D>
+void Solver<D>::find_struck_blocks(const Crew& crew) {
+    each_used([&](Section& s) {
+        const Part part = crew.part(s.contacts.blocks());
+        const std::size_t width = s.contacts.width();
+        const BlockSpan<D> all = s.contacts.span(0, s.contacts.blocks());
+        for (std::size_t block = part.begin; block < part.end; ++block) {
+            const std::size_t first = block * width, end = first + width;
+            if (!groups_known_) {
+                s.groups[block] = 0;
+                for (std::size_t i = first; i < end; ++i)
+                    s.groups[block] |= group_bit(all.a[i]) | group_bit(all.b[i]);
+            }
+            s.has_struck[block] = 0;
+            if (!(s.groups[block] & struck_groups_)) continue;
+            for (std::size_t i = first; i < end; ++i)
+                s.has_struck[block] |= is_struck_[all.a[i]] | is_struck_[all.b[i]];
+        }
+    });
+    crew.meet();
 }
 
 /// The many small changes of settling are each rounded to the size of the velocity. So the velocities of
@@ -132,32 +189,28 @@ void Solver<D>::mark_struck_bodies() {
 /// what joints do is not in the sum.
 template <int D>
 void Solver<D>::sum_struck() {
-    mark_struck_bodies();
+    groups_known_ = true;
+    sums_.resize(records_.size());
     RecordView<D> sums = view_;
-    const auto clear = [&](std::uint32_t slot) {
-        Body<D, float> body = gather<float>(sums, &slot);
-        body.motion = {};
-        scatter_velocity(sums, &slot, body, false);
-    };
-    if (!sums_begun_) {
-        sums_ = records_;
-        sums.records = sums_.data();
-        for (std::uint32_t slot = 1; slot < slots_.size(); ++slot) clear(slot);
-        sums_begun_ = true;
-    }
     sums.records = sums_.data();
+    const auto begin_sum = [&](std::uint32_t slot) {
+        Body<D, float> body = gather<float>(view_, &slot);
+        body.motion = {};
+        write_record(sums, &slot, body);
+    };
     wanted_.clear();
-    for (Section& s : sections_) {
+    each_used([&](Section& s) {
         for (std::size_t block = 0; block < s.contacts.blocks(); ++block) {
+            if (!s.has_struck[block]) continue;
             const BlockSpan<D> one = s.contacts.span(block, 1);
-            bool wanted = false;
-            for (std::size_t lane = 0; lane < s.contacts.width(); ++lane)
-                wanted |= is_struck_[one.a[lane]] || is_struck_[one.b[lane]];
-            if (!wanted) continue;
-            passes_of(s).warm_start(one, sums);
-            wanted_.push_back({one, s.contacts.width()});
+            wanted_.push_back({one, &passes_of(s)});
+            for (std::size_t lane = 0; lane < s.contacts.width(); ++lane) {
+                begin_sum(one.a[lane]);
+                begin_sum(one.b[lane]);
+            }
         }
-    }
+    });
+    for (const auto& [block, passes] : wanted_) passes->warm_start(block, sums);
     for (const std::uint32_t slot : struck_slots_) {
         Drive<D, float> drive = drives_.get(slot);
         Body<D, float> body = gather<float>(view_, &slot);
@@ -168,20 +221,16 @@ void Solver<D>::sum_struck() {
         drives_.set(slot, drive);
         scatter_velocity(view_, &slot, body, false);
     }
-    for (const auto& [block, width] : wanted_) {
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            clear(block.a[lane]);
-            clear(block.b[lane]);
-        }
-    }
 }
 
-#define CAROM_INSTANTIATE(D)                         \
-    template bool Solver<D>::find_struck();          \
-    template void Solver<D>::note_blows();           \
-    template void Solver<D>::forget_last_blows();    \
-    template void Solver<D>::settle_struck<true>();  \
-    template void Solver<D>::settle_struck<false>(); \
+#define CAROM_INSTANTIATE(D)                                       \
+    template void Solver<D>::find_struck();                        \
+    template void Solver<D>::note_blows();                         \
+    template void Solver<D>::forget_last_blows();                  \
+    template void Solver<D>::settle<true>(const Crew&);            \
+    template void Solver<D>::settle<false>(const Crew&);           \
+    template void Solver<D>::mark_struck_bodies();                 \
+    template void Solver<D>::find_struck_blocks(const Crew& crew); \
     template void Solver<D>::sum_struck();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

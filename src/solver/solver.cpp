@@ -102,7 +102,7 @@ void Solver<D>::mark_jointed(const SolverInput<D>& input) {
 
 template <int D>
 void Solver<D>::run(const SolverInput<D>& input) {
-    mark_jointed(input);
+    if (joints_.expects_others()) mark_jointed(input);
     if (count_ == 0 && input.active_joints.empty() && input.active_couplings.empty()) return;
     set_lengths(input);
     make_room();
@@ -148,22 +148,23 @@ void Solver<D>::step_through(const SolverInput<D>& input, const Crew& crew) {
         each_share(crew, false,
                    [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.find_pushing(span); });
         crew.meet();
-        crew.alone([&] {
-            some_struck_ = find_struck();
-            if (some_struck_) settle_struck<true>();
-        });
+        crew.alone([&] { find_struck(); });
+        settle<true>(crew);
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
         if (some_impacts_) crew.alone([&] { impact_solver_.shift(impact_view(input)); });
         joints_.relax(view_, crew);
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.relax(span, view_, sub_);
         });
-        crew.alone([&] {
-            if (!some_struck_) return;
-            settle_struck<false>();
-            sum_struck();
-            note_blows();
-        });
+        if (some_struck_) {
+            settle<false>(crew);
+            crew.alone([&] { mark_struck_bodies(); });
+            find_struck_blocks(crew);
+            crew.alone([&] {
+                sum_struck();
+                note_blows();
+            });
+        }
         const bool last = i + 1 == input.substeps;
         each_body_share(crew, [&](const BodySpan<D>& bodies) {
             (last ? passes_->finish : passes_->finish_and_integrate_velocities)(bodies, h_);

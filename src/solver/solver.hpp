@@ -35,7 +35,7 @@ struct SolverInput {
     double restitution_threshold = 1;
     bool impacts_together = true;  ///< else one after the other, at the end of the step
     JointMethod joint_method = JointMethod::automatic;
-    std::span<JointRecord<D>> joints{};              ///< all; impulses are read and written
+    std::span<JointRecord<D>> joints{};  ///< all; impulses are read, and written when they are let go
     std::span<const std::uint32_t> active_joints{};  ///< indices of those that hold a body which moves freely
     std::span<CouplingRecord<D>> couplings{};        ///< the same for these
     std::span<const std::uint32_t> active_couplings{};
@@ -56,6 +56,7 @@ class Solver {
     template <class LetGo>
     bool follow(std::span<const std::uint32_t> awake, std::span<const BodyType> types, LetGo&& let_go) {
         if (!slots_.follow(awake, types)) return false;
+        joints_.expect_others();
         for (Section& s : sections_) {
             for (std::size_t i = s.contacts.size(); i-- > 0;) {
                 if (slots_.changed(s.contacts.body_a(i)) || slots_.changed(s.contacts.body_b(i)))
@@ -70,6 +71,15 @@ class Solver {
     bool changed(std::uint32_t body) const { return slots_.changed(body); }
     /// Has the body a contact here, or had it a joint in the last `run`?
     bool moves(std::uint32_t body) const { return is_loaded(slots_.slot(body)); }
+
+    /// Joints change that the solver has taken up, or come, go, or get bodies with other masses: see
+    /// `JointSolver::let_go`.
+    void let_joints_go(std::span<JointRecord<D>> joints) {
+        joints_.let_go(joints);
+        joints_.expect_others();
+    }
+    /// Completes the record of a joint by what the solver knows.
+    void read_joint(std::uint32_t joint, JointRecord<D>& record) const { joints_.read(joint, record); }
 
     // Contacts, by their number in the world. -----------------------------------------------------------
 
@@ -103,7 +113,7 @@ class Solver {
         each_part(scheduler, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             passes.refresh(span, poses, shapes.data(), reach);
         });
-        each_section([&](Section& s) { each_found(s, look); });
+        each_used([&](Section& s) { each_found(s, look); });
     }
 
     void run(const SolverInput<D>& input);
@@ -112,7 +122,7 @@ class Solver {
     template <class Changed>
     void report(Scheduler* scheduler, Changed&& changed) {
         each_part(scheduler, [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.touch(span); });
-        each_section([&](Section& s) { each_found(s, changed); });
+        each_used([&](Section& s) { each_found(s, changed); });
     }
 
     static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -123,11 +133,13 @@ class Solver {
     /// The contacts of one colour; those of the overflow are solved one by one.
     struct Section {
         ContactStore<D> contacts;
-        std::vector<std::uint32_t> waiting;  ///< by block, a bit a lane: those without an impulse so far
-        std::vector<std::uint32_t> begun;    ///< those that got their first impulse in this sub-step
-        std::vector<std::uint32_t> hit;      ///< those for which that was a blow, in the sub-step before
-        std::vector<std::uint32_t> struck;   ///< both: to be settled in this sub-step
-        ContactBlocks<D> settling;           ///< copies of the struck ones, close together
+        std::vector<std::uint32_t> waiting;    ///< by block, a bit a lane: those without an impulse so far
+        std::vector<std::uint32_t> begun;      ///< those that got their first impulse in this sub-step
+        std::vector<std::uint32_t> hit;        ///< those for which that was a blow, in the sub-step before
+        std::vector<std::uint32_t> struck;     ///< both: to be settled in this sub-step
+        ContactBlocks<D> settling;             ///< copies of the struck ones, close together
+        std::vector<std::uint8_t> has_struck;  ///< by block: has it contacts of struck bodies?
+        std::vector<std::uint64_t> groups;     ///< by block: which `group_bit`s its bodies have
     };
     /// A point that may bounce, as it was at the start of the step.
     struct Impact {
@@ -145,19 +157,24 @@ class Solver {
     void work(const SolverInput<D>& input, const Crew& crew);
     void step_through(const SolverInput<D>& input, const Crew& crew);
     bool is_small() const { return count_ < 256; }  ///< so that it is not worth several workers
-    template <class Visit>
-    void each_section(Visit&& visit) {
+    /// Lists the sections that have contacts, for `each_used`, which is called often.
+    void list_used() {
+        used_.clear();
         for (Section& section : sections_) {
-            if (!section.contacts.empty()) visit(section);
+            if (!section.contacts.empty()) used_.push_back(&section);
         }
+    }
+    template <class Visit>
+    void each_used(Visit&& visit) {
+        for (Section* section : used_) visit(*section);
     }
     /// `visit(passes, blocks)` for a share of the blocks of each section: the workers pass through them side
     /// by side, and where bodies are written they wait for one another after each colour.
     template <class Visit>
     void each_share(const Crew& crew, bool writes_bodies, Visit&& visit) {
         constexpr std::size_t least_blocks = 4;
-        for (Section& s : sections_) {
-            if (s.contacts.empty()) continue;
+        for (Section* used : used_) {
+            Section& s = *used;
             const bool one_by_one = writes_bodies && &s == &sections_[Colours::overflow];
             const Part part = one_by_one ? Part{0, crew.is_first() ? s.contacts.blocks() : 0}
                                          : crew.part(s.contacts.blocks(), least_blocks);
@@ -168,6 +185,7 @@ class Solver {
     /// The same with no step around it, and without writing bodies.
     template <class Visit>
     void each_part(Scheduler* scheduler, Visit&& visit) {
+        list_used();
         run_crew(scheduler, is_small(), [&](const Crew& crew) { each_share(crew, false, visit); });
     }
     /// `visit(bodies)` for a share of the bodies.
@@ -221,15 +239,22 @@ class Solver {
     void store_bodies(const SolverInput<D>& input, const Crew& crew) const;
 
     // settle.cpp: contacts that begin.
-    bool find_struck();
+    void find_struck();
     void note_blows();
     void forget_last_blows();
-    void copy_struck(Section& section);
-    void return_struck(Section& section);
     template <bool biased>
-    void settle_struck();
-    void sum_struck();
+    void settle(const Crew& crew);
+    void copy_struck(Section& section, const Part& places);
+    void return_struck(Section& section, const Part& places);
+    template <bool biased>
+    void settle_struck(const Crew& crew);
+    template <class Visit>
+    void each_settling(const Crew& crew, bool writes_bodies, Visit&& visit);
     void mark_struck_bodies();
+    void find_struck_blocks(const Crew& crew);
+    /// Bodies are told apart by groups of slots, so that most blocks need one look.
+    static std::uint64_t group_bit(std::uint32_t slot) { return std::uint64_t{1} << (slot / 64 % 64); }
+    void sum_struck();
     static float speed_taken(const LaneStore<Rows>& rows, std::size_t index);
 
     // restitution.cpp
@@ -249,19 +274,23 @@ class Solver {
     std::vector<std::uint8_t> jointed_;                                       ///< by slot: has it a joint?
     RecordView<D> view_;
     std::vector<float> records_, free_axes_;
+    std::vector<std::uint32_t> source_;  ///< by slot: its body, if it is loaded
+    std::vector<float> present_;         ///< by slot: 1 if that is taken up in lanes, else 0
     LaneStore<Drive<D, float>> drives_;  ///< by slot
 
     std::size_t count_ = 0;  ///< of contacts
     Colours colours_;
     JointSolver<D> joints_;
     std::array<Section, Colours::count + 1> sections_;
-    std::vector<float> sums_;  ///< like `records_`, with what the impulses make as velocities
-    bool sums_begun_ = false;  ///< in this step: else the rest of `sums_` is not that of `records_`
+    std::vector<Section*> used_;               ///< those that have contacts
+    std::vector<float> sums_;                  ///< like `records_`, with what the impulses make as velocities
     std::vector<std::uint8_t> is_struck_;      ///< by slot: has it a contact that is struck?
     std::vector<std::uint32_t> struck_slots_;  ///< those that have
-    std::vector<std::pair<BlockSpan<D>, std::size_t>>
-        wanted_;                   ///< blocks with such contacts, and their widths
-    bool some_struck_ = false;     ///< in this sub-step
+    std::vector<std::pair<BlockSpan<D>, const Passes<D>*>> wanted_;  ///< blocks with contacts of these
+    bool some_struck_ = false;                                       ///< in this sub-step
+    bool many_struck_ = false;   ///< so many that they are worth all workers
+    bool groups_known_ = false;  ///< in this step
+    std::uint64_t struck_groups_ = 0;
     std::vector<Impact> impacts_;  ///< points with restitution
     ImpactSolver<D> impact_solver_;
     std::vector<ContactStore<D>*> stores_;  ///< of all sections

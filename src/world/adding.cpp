@@ -23,6 +23,7 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.types.emplace_back();
         w.infos.emplace_back();
         w.applied.emplace_back();
+        w.only_shape.emplace_back();
         w.tree_of.push_back(of_fixed);
         w.moving.push_back(stands_still);
         w.place.emplace_back();
@@ -35,6 +36,7 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.infos[i] = {};
         w.applied[i] = {};
     }
+    w.only_shape[i] = w.no_shape;
     return i;
 }
 
@@ -46,6 +48,7 @@ void make_room_for(WorldState<D>& w, std::size_t bodies, std::size_t shapes) {
     make_room(w.states, bodies);
     make_room(w.masses, bodies);
     make_room(w.types, bodies);
+    make_room(w.only_shape, bodies);
     make_room(w.infos, bodies);
     make_room(w.applied, bodies);
     make_room(w.tree_of, bodies);
@@ -94,6 +97,7 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeRecord<D>&
     if (i == w.shapes.size()) {
         w.shapes.emplace_back();
         w.company.emplace_back();
+        w.extents.emplace_back();
         w.fat_boxes.emplace_back();
         w.has_new_box.push_back(0);
         w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
@@ -189,6 +193,7 @@ BodyId<D> put_body(WorldState<D>& w, const BodyDefinition<D>& definition, const 
         plan.mass = m;
     } else {
         s.position += rotate(s.rotation, m.center);
+        w.measure_extents(i);
     }
     w.some_locked |= definition.locks != Locks{};
     if (definition.type != BodyType::fixed) {

@@ -15,10 +15,29 @@ namespace {
 /// boxes, so this is little.
 constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
 
+/// Mark beside the one in `has_new_box`, while new boxes are looked for: the shape has one since.
+constexpr std::uint8_t renewed_now = 2;
+
 /// What bounces may turn within a step, or be struck, and then strike what is near.
 template <int D>
 double least_margin(const ShapeRecord<D>& shape) {
     return shape.definition->material.restitution >= lively_restitution ? 0.5 * speculative_distance : 0;
+}
+
+/// How far the rotated box reaches from its middle along the axes of the world.
+Vec<2> reach_of(const Rotation<2>& q, const Vec<2>& half) {
+    const double c = std::fabs(q.c), s = std::fabs(q.s);
+    return {c * half.x + s * half.y, s * half.x + c * half.y};
+}
+Vec<3> reach_of(const Rotation<3>& q, const Vec<3>& half) {
+    const double x = 2 * q.x, y = 2 * q.y, z = 2 * q.z;
+    const double xx = x * q.x, yy = y * q.y, zz = z * q.z, xy = x * q.y, xz = x * q.z, yz = y * q.z,
+                 wx = x * q.w, wy = y * q.w, wz = z * q.w;
+    const auto sum = [&](double a, double b, double c) {
+        return std::fabs(a) * half.x + std::fabs(b) * half.y + std::fabs(c) * half.z;
+    };
+    return {sum(1 - (yy + zz), xy - wz, xz + wy), sum(xy + wz, 1 - (xx + zz), yz - wx),
+            sum(xz - wy, yz + wx, 1 - (xx + yy))};
 }
 
 template <int D>
@@ -113,38 +132,91 @@ void WorldState<D>::set_box(std::uint32_t shape, const Aabb<D>& box) {
     mark_moved(shape);
 }
 
+/// Takes down what is asked of the shapes of the body in each step, so that it lies close together.
+template <int D>
+void WorldState<D>::measure_extents(std::uint32_t body) {
+    const std::vector<ShapeId<D>>& ids = infos[body].shapes;
+    only_shape[body] = ids.size() == 1 ? ids[0].index : no_shape;
+    for (const ShapeId<D>& id : ids) {
+        const Shape<D>& shape = shapes[id.index].shape;
+        const Aabb<D> box = bounds(shape, Transform<D>{});
+        Extent<D>& extent = extents[id.index];
+        extent.radius = core_radius(shape);
+        extent.middle = 0.5 * (box.lower + box.upper) - masses[body].center;
+        for (int i = 0; i < D; ++i)
+            extent.half[i] = std::max(0.0, 0.5 * (box.upper[i] - box.lower[i]) - extent.radius);
+        // A point that turns by an angle about the centre of mass, at the distance r from it, comes no
+        // further than its arc, nor than 2 r. Of a ball only the middle counts.
+        const bool is_ball = shape.kind == ShapeKind::ball;
+        extent.arm = is_ball ? length(shape.a - masses[body].center) : masses[body].radius;
+        extent.to_strike = least_margin(shapes[id.index]);
+    }
+}
+
+/// Is the shape sure to stay in its fat box? As the box of an extent tells, which for some shapes is larger
+/// than their own, and so is often enough to know.
+template <int D>
+bool WorldState<D>::is_in_box(std::uint32_t shape, const Vec<D>& way, double turning, double further) const {
+    constexpr double rounding = 1e-12;
+    const Extent<D>& extent = extents[shape];
+    const BodyState<D>& s = states[company[shape].body];
+    const Vec<D> middle = s.position + rotate(s.rotation, extent.middle),
+                 reach = reach_of(s.rotation, extent.half);
+    const OuterBox<D>& box = fat_boxes[shape];
+    bool inside = true;
+    for (int i = 0; i < D; ++i) {
+        const double most = reach[i] + extent.radius + turning * extent.arm + further;
+        const double with_rounding = most + rounding * (std::fabs(middle[i]) + most);
+        inside &= box.lower[i] <= middle[i] - with_rounding + std::min(way[i], 0.0) &&
+                  middle[i] + with_rounding + std::max(way[i], 0.0) <= box.upper[i];
+    }
+    return inside;
+}
+
+/// Gives fat boxes to the shapes of the body that may leave their own in this step. Returns whether there are
+/// any; they are marked by `renewed_now`.
+template <int D>
+bool WorldState<D>::renew_boxes(std::uint32_t body, double dt, double falling) {
+    const BodyState<D>& s = states[body];
+    const Vec<D> way = s.velocity * dt;
+    const double turning = std::min(std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * dt, 2.0);
+    bool any = false;
+    each_shape_of(body, [&](std::uint32_t shape) {
+        const Extent<D>& extent = extents[shape];
+        const double bouncing = extent.to_strike > 0 ? length(way) : 0;
+        if (is_in_box(shape, way, turning, falling + bouncing)) return;
+        const Aabb<D> tight = bounds(shapes[shape].shape, frame_of(body));
+        const Aabb<D> swept = grown(tight, turning * extent.arm + falling + bouncing, way);
+        if (contains(fat_boxes[shape], swept)) return;
+        const Vec<D> size = tight.upper - tight.lower;
+        double smallest = size.x;
+        for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
+        const double margin = std::max(std::min(box_margin, margin_share * smallest), extent.to_strike);
+        fat_boxes[shape] = grown(swept, margin, Vec<D>{});
+        has_new_box[shape] |= renewed_now;
+        any = true;
+    });
+    return any;
+}
+
 /// Gives a fat box to every shape that may leave its own in this step.
 template <int D>
 void WorldState<D>::refresh_boxes(double dt) {
+    const double falling = length(definition.gravity) * dt * dt;
+    renewed.resize(awake.size());
+    each_awake([&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) renewed[k] = renew_boxes(awake[k], dt, falling);
+    });
     moving_shapes.clear();
     new_leaves.clear();
-    const double falling = length(definition.gravity) * dt * dt;
-    for (const std::uint32_t body : awake) {
-        const Transform<D> placed = frame_of(body);
-        const Vec<D> way = states[body].velocity * dt;
-        const double spin =
-            std::sqrt(angular_dot(states[body].angular_velocity, states[body].angular_velocity));
-        for (const ShapeId<D>& id : infos[body].shapes) {
-            moving_shapes.push_back(id.index);
-            const Shape<D>& shape = shapes[id.index].shape;
-            const Aabb<D> tight = bounds(shape, placed);
-            // A point that turns by an angle about the centre of mass, at the distance r from it, comes no
-            // further than its arc, nor than 2 r. Of a ball only the middle counts.
-            const bool is_ball = shape.kind == ShapeKind::ball;
-            const double arm = is_ball ? length(shape.a - masses[body].center) : masses[body].radius;
-            const double turning = std::min(spin * dt, 2.0) * arm;
-            const double to_strike = least_margin(shapes[id.index]);
-            const double bouncing = to_strike > 0 ? length(way) : 0;
-            const Aabb<D> swept = grown(tight, turning + falling + bouncing, way);
-            if (contains(fat_boxes[id.index], swept)) continue;
-            const Vec<D> size = tight.upper - tight.lower;
-            double smallest = size.x;
-            for (int i = 1; i < D; ++i) smallest = std::min(smallest, size[i]);
-            const double margin = std::max(std::min(box_margin, margin_share * smallest), to_strike);
-            fat_boxes[id.index] = grown(swept, margin, Vec<D>{});
-            mark_moved(id.index);
-            new_leaves.push_back(shapes[id.index].leaf);
-        }
+    for (std::size_t k = 0; k < awake.size(); ++k) {
+        each_shape_of(awake[k], [&](std::uint32_t shape) {
+            moving_shapes.push_back(shape);
+            if (!renewed[k] || !(has_new_box[shape] & renewed_now)) return;
+            has_new_box[shape] &= static_cast<std::uint8_t>(~renewed_now);
+            mark_moved(shape);
+            new_leaves.push_back(shapes[shape].leaf);
+        });
     }
     Tree<D>& tree = trees[of_moving];
     const auto box_of = [&](std::uint32_t shape) -> const OuterBox<D>& { return fat_boxes[shape]; };
@@ -155,40 +227,47 @@ void WorldState<D>::refresh_boxes(double dt) {
     }
 }
 
+/// Has the body come no further in this step than its velocity at the start told? `turned` is how far its
+/// outermost point came by its turn.
+template <int D>
+bool WorldState<D>::is_as_foreseen(std::size_t place_in_awake, double turned, double dt) const {
+    const double falling = length(definition.gravity) * dt * dt;
+    const BodyState<D>&from = before[place_in_awake], &to = states[awake[place_in_awake]];
+    const Vec<D> way = from.velocity * dt, moved = to.position - from.position;
+    bool as_foreseen = true;
+    for (int i = 0; i < D; ++i) {
+        as_foreseen &= moved[i] - turned >= std::min(way[i], 0.0) - falling &&
+                       moved[i] + turned <= std::max(way[i], 0.0) + falling;
+    }
+    return as_foreseen;
+}
+
 /// Boxes are made to hold what a body will do in a step as far as its velocity tells. One that was struck may
 /// have left its own since; it gets a new box, so that between steps every box holds its shape.
 template <int D>
-void WorldState<D>::keep_in_boxes(double dt) {
-    const double falling = length(definition.gravity) * dt * dt;
+void WorldState<D>::keep_in_boxes() {
     for (std::size_t k = 0; k < awake.size(); ++k) {
-        const std::uint32_t body = awake[k];
-        const BodyState<D>&from = before[k], &to = states[body];
-        const Vec<D> way = from.velocity * dt, moved = to.position - from.position;
-        const double turned = masses[body].radius * chord_between(from.rotation, to.rotation);
-        bool as_foreseen = true;
-        for (int i = 0; i < D; ++i) {
-            as_foreseen &= moved[i] - turned >= std::min(way[i], 0.0) - falling &&
-                           moved[i] + turned <= std::max(way[i], 0.0) + falling;
-        }
-        if (as_foreseen) continue;
-        const Transform<D> placed = frame_of(body);
-        for (const ShapeId<D>& id : infos[body].shapes) {
-            const Aabb<D> tight = bounds(shapes[id.index].shape, placed);
-            if (!contains(fat_boxes[id.index], tight)) set_box(id.index, tight);
-        }
+        if (!(outcomes[k] & (went_astray | was_stopped))) continue;
+        const Transform<D> placed = frame_of(awake[k]);
+        each_shape_of(awake[k], [&](std::uint32_t shape) {
+            const Aabb<D> tight = bounds(shapes[shape].shape, placed);
+            if (!contains(fat_boxes[shape], tight)) set_box(shape, tight);
+        });
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                           \
-    template TreeKind WorldState<D>::tree_for(std::uint32_t) const;    \
-    template void WorldState<D>::change_tree(std::uint32_t, TreeKind); \
-    template void WorldState<D>::mark_moved(std::uint32_t);            \
-    template void WorldState<D>::insert_leaf(std::uint32_t);           \
-    template void WorldState<D>::remove_leaf(std::uint32_t);           \
-    template void WorldState<D>::plant();                              \
-    template void WorldState<D>::plant_for_queries();                  \
-    template void WorldState<D>::refresh_boxes(double);                \
-    template void WorldState<D>::keep_in_boxes(double);
+#define CAROM_INSTANTIATE(D)                                                        \
+    template TreeKind WorldState<D>::tree_for(std::uint32_t) const;                 \
+    template void WorldState<D>::change_tree(std::uint32_t, TreeKind);              \
+    template void WorldState<D>::mark_moved(std::uint32_t);                         \
+    template void WorldState<D>::insert_leaf(std::uint32_t);                        \
+    template void WorldState<D>::remove_leaf(std::uint32_t);                        \
+    template void WorldState<D>::plant();                                           \
+    template void WorldState<D>::plant_for_queries();                               \
+    template void WorldState<D>::refresh_boxes(double);                             \
+    template void WorldState<D>::measure_extents(std::uint32_t);                    \
+    template bool WorldState<D>::is_as_foreseen(std::size_t, double, double) const; \
+    template void WorldState<D>::keep_in_boxes();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE

@@ -285,6 +285,7 @@ void World<D>::apply_force(BodyId<D> body, const Vec<D>& force, const Vec<D>& po
     if (state_->types[i] != BodyType::dynamic) return;
     state_->applied[i].force += force;
     state_->applied[i].torque += cross(point - state_->states[i].position, force);
+    state_->applied_to.push_back(i);
     state_->wake(i);
 }
 
@@ -294,6 +295,7 @@ void World<D>::apply_torque(BodyId<D> body, const Angular<D>& torque) {
     require_finite(torque, "torque");
     if (state_->types[i] != BodyType::dynamic) return;
     state_->applied[i].torque += torque;
+    state_->applied_to.push_back(i);
     state_->wake(i);
 }
 

@@ -31,9 +31,9 @@ void WorldState<D>::add_contact(const PairKey& key) {
                       contact_list(key.b, c.on_fixed));
     contacts.push_back(c);
     caches.emplace_back();
-    loosen(static_cast<std::uint32_t>(contacts.size() - 1));
-    if (!c.on_fixed) return;
-    if (++fixed_contacts_of[mover(c)] == 2) regrouped.push_back(mover(c));
+    if (c.on_fixed && ++fixed_contacts_of[mover(c)] == 2) regrouped.push_back(mover(c));
+    const auto contact = static_cast<std::uint32_t>(contacts.size() - 1);
+    if (!stays_apart(contact)) loosen(contact);
 }
 
 /// A body that has several contacts with fixed shapes may lie on one surface that they make up, so that they
@@ -177,6 +177,7 @@ void WorldState<D>::follow_bodies() {
         leave_solver(i);
     });
     if (!changed) return;
+    joints_are_listed = false;
     for (std::size_t k = apart.size(); k-- > 0;) {
         const auto i = static_cast<std::uint32_t>(k);
         if (solver.changed(apart.body_a(i)) || solver.changed(apart.body_b(i))) loosen(apart.contact(i));
@@ -196,29 +197,40 @@ void WorldState<D>::follow_bodies() {
 template <int D>
 std::optional<Carrying<D>> WorldState<D>::carrying(std::uint32_t contact) {
     const ContactRecord<D>& c = contacts[contact];
-    Carrying<D> result{caches[contact]};
+    Carrying<D> result{caches[contact], {}};
     if (!definition.continuous || c.special) return std::nullopt;
     if (c.on_fixed) {
         if (fixed_contacts_of[mover(c)] != 1) return std::nullopt;
     } else {
         if (moving[c.body_a] == stands_still || moving[c.body_b] == stands_still) return std::nullopt;
-        if (!may_be_struck(c)) {
-            result.shape_a = lane_shapes.find(c.shape_a, shapes[c.shape_a].shape, masses[c.body_a]);
-            result.shape_b = lane_shapes.find(c.shape_b, shapes[c.shape_b].shape, masses[c.body_b]);
-        }
+        if (!may_be_struck(c)) result.shapes = lane_pair(c);
     }
-    if (result.cache.way < 0 && !result.can_be_remade()) return std::nullopt;
+    if (result.cache.way < 0 && !result.shapes) return std::nullopt;
     return result;
 }
 
-/// Does nothing have to be known of the contact until its bodies have come nearer? The cache has to tell of a
-/// gap between shapes that are not infinite. Where several fixed shapes may be one surface, each counts.
+/// The shapes of the contact, for lanes.
 template <int D>
-bool WorldState<D>::can_stay_apart(const ContactRecord<D>& c, const ContactCache<D>& cache) const {
+LanePair<D> WorldState<D>::lane_pair(const ContactRecord<D>& c) {
+    if (c.facet != no_part) return {};
+    return {lane_shapes.find(c.shape_a, shapes[c.shape_a].shape, masses[c.body_a]),
+            lane_shapes.find(c.shape_b, shapes[c.shape_b].shape, masses[c.body_b])};
+}
+
+/// If nothing has to be known of the contact until its bodies have come nearer, it is put with those that are
+/// apart. It must be known what holds the shapes apart, or lanes find that out. Where several fixed shapes
+/// may be one surface, each counts.
+template <int D>
+bool WorldState<D>::stays_apart(std::uint32_t contact) {
+    ContactRecord<D>& c = contacts[contact];
     if (!definition.continuous || c.count > 0 || c.touching || c.merged || c.special || may_be_struck(c))
         return false;
-    if (cache.count > 0 || cache.way < 0 || cache.normal == Vec<D, float>{}) return false;
-    return masses[c.body_b].radius > 0 && (!c.on_fixed || fixed_contacts_of[mover(c)] == 1);
+    if (!(masses[c.body_b].radius > 0) || (c.on_fixed && fixed_contacts_of[mover(c)] != 1)) return false;
+    const LanePair<D> pair = lane_pair(c);
+    if (!pair && !caches[contact].tells_of_gap()) return false;
+    c.apart = apart.add(contact, c.body_a, c.body_b, caches[contact], masses[c.body_a].radius,
+                        masses[c.body_b].radius, pair);
+    return true;
 }
 
 /// Gives the solver what came out for the loose contacts. Those that can be carried along are not loose then.
@@ -239,11 +251,7 @@ void WorldState<D>::place_contacts() {
         if (pushes && !c.place) to_place.push_back(i);
         if (!pushes && c.place) leave_solver(i);
         if (carried) continue;
-        if (!pushes && can_stay_apart(c, caches[i])) {
-            c.apart =
-                apart.add(i, c.body_a, c.body_b, caches[i], masses[c.body_a].radius, masses[c.body_b].radius);
-            continue;
-        }
+        if (!pushes && stays_apart(i)) continue;
         c.loose = static_cast<std::uint32_t>(left);
         loose[left++] = i;
     }

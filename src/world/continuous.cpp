@@ -12,9 +12,6 @@ namespace carom::detail {
 
 namespace {
 
-/// A core that comes no further than this share of its radius is not looked at.
-constexpr double seen_share = 0.25;
-
 /// Where a body will be after `time` seconds if only gravity acts on it.
 template <int D>
 BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity, double time) {
@@ -108,27 +105,15 @@ std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>
 
 }  // namespace
 
-namespace {
-
-/// May the core of a shape of the body have come so far that it passed through something?
-template <int D>
-bool came_far(const BodyState<D>& before, const BodyState<D>& now, const BodyMass<D>& mass) {
-    const double turned = mass.radius * chord_between(before.rotation, now.rotation);
-    return length(now.position - before.position) + turned > seen_share * mass.core_radius;
-}
-
-}  // namespace
-
 /// The contacts with fixed shapes of all bodies that came far in this step, in the order of bodies and
 /// shapes.
 template <int D>
 void WorldState<D>::list_fast_contacts() {
     fast.clear();
     for (std::size_t k = 0; k < awake.size(); ++k) {
-        const std::uint32_t i = awake[k];
-        if (moving[i] == moves_freely && came_far(before[k], states[i], masses[i])) fast.push_back(i);
+        if ((outcomes[k] & went_far) && moving[awake[k]] == moves_freely) fast.push_back(awake[k]);
     }
-    std::ranges::sort(fast);
+    if (!std::ranges::is_sorted(fast)) std::ranges::sort(fast);
     fixed_contacts.clear();
     if (fast.empty()) return;
     for (const std::uint32_t body : fast) {
@@ -243,6 +228,7 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
         states[body].position = stopped.position;
         states[body].rotation = stopped.rotation;
         states[body].turns = stopped.turns;
+        outcomes[place[body]] |= was_stopped;
         return;
     }
     // It touched from the start, so there is no going back: it turns as it did, and its core stays outside.
@@ -252,7 +238,9 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core);
     const Vec<D> axis = carried(passes->axis);
     const double inwards = dot(axis, now.position + carried(there - then.position) - last);
-    if (inwards > 0) states[body].position += inwards * axis;
+    if (inwards <= 0) return;
+    states[body].position += inwards * axis;
+    outcomes[place[body]] |= was_stopped;
 }
 
 /// Bodies that are apart and may meet within the step are moved on to where they first come near

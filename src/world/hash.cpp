@@ -188,7 +188,9 @@ std::uint64_t World<D>::hash() const {
     });
     for (const JointId<D>& id : w.joint_ids) {
         const JointDefinition<D>& joint = w.joint_definitions[id.index];
-        fold.all(id, w.joints[id.index], joint.collide, joint.break_force, joint.break_torque);
+        JointRecord<D> record = w.joints[id.index];
+        w.solver.read_joint(id.index, record);
+        fold.all(id, record, joint.collide, joint.break_force, joint.break_torque);
     }
     for (const CouplingRecord<D>& c : w.couplings)
         fold.all(c.joint, c.ends[0], c.ends[1], c.factors, c.sum, c.is_rope, c.kept, c.before);

@@ -21,10 +21,21 @@ std::uint32_t WorldState<D>::index(JointId<D> joint) const {
 }
 
 /// The joints of bodies that move freely. These bodies are the solver's and do not fly.
+/// Something is about to change of which joints there are, of what is fixed about one, or of its bodies'
+/// masses.
+template <int D>
+void WorldState<D>::expect_other_joints() {
+    joints_are_listed = false;
+    solver.let_joints_go(joints);
+}
+
 template <int D>
 void WorldState<D>::list_active_joints() {
+    if (joints_are_listed) return;
+    joints_are_listed = true;
     active_joints.clear();
     active_couplings.clear();
+    breakable_joints.clear();
     const auto is_free = [&](std::uint32_t body) { return body != no_body && moving[body] == moves_freely; };
     const auto is_active = [&](const JointRecord<D>& joint) {
         return is_free(joint.body_a) || is_free(joint.body_b);
@@ -36,6 +47,13 @@ void WorldState<D>::list_active_joints() {
     for (std::uint32_t i = 0; i < couplings.size(); ++i) {
         if (is_active(couplings[i].ends[0]) || is_active(couplings[i].ends[1])) active_couplings.push_back(i);
     }
+    const auto list_breakable = [&](std::uint32_t i) {
+        const JointDefinition<D>& joint = joint_definitions[i];
+        if (std::isinf(joint.break_force) && std::isinf(joint.break_torque)) return;
+        breakable_joints.push_back(i);
+    };
+    for (const std::uint32_t i : active_joints) list_breakable(i);
+    for (const std::uint32_t i : active_couplings) list_breakable(couplings[i].joint);
 }
 
 /// Who hangs on something that moves does not sleep.
@@ -51,18 +69,15 @@ void WorldState<D>::wake_jointed() {
 template <int D>
 void WorldState<D>::break_joints(double dt) {
     std::vector<std::uint32_t> broken;
-    const auto check = [&](std::uint32_t i) {
+    for (const std::uint32_t i : breakable_joints) {
         const JointDefinition<D>& joint = joint_definitions[i];
-        if (std::isinf(joint.break_force) && std::isinf(joint.break_torque)) return;
         const Load<D> load = joint_load(i, dt);
         const double force = length(load.force), torque = std::sqrt(angular_dot(load.torque, load.torque));
-        if (force <= joint.break_force && torque <= joint.break_torque) return;
+        if (force <= joint.break_force && torque <= joint.break_torque) continue;
         events.joint_breaks.push_back(
             {joint_slots.template id<JointId<D>>(i), joint.a, joint.b, force, torque});
         broken.push_back(i);
-    };
-    for (const std::uint32_t i : active_joints) check(i);
-    for (const std::uint32_t i : active_couplings) check(couplings[i].joint);
+    }
     for (const std::uint32_t i : broken) {
         if (joint_slots.in_use(i)) remove_joint(i);
     }
@@ -72,7 +87,9 @@ void WorldState<D>::break_joints(double dt) {
 template <int D>
 Load<D> WorldState<D>::joint_load(std::uint32_t joint, double dt) const {
     if (dt == 0) return {};
-    const JointRecord<D>& j = joints[joint];
+    JointRecord<D> j;
+    j.total = joints[joint].total;
+    solver.read_joint(joint, j);
     const double rate = 1 / dt;
     const Vec<D> force = rate * narrow<double>(j.total.force);
     const Angular<D> torque = narrow<double>(j.total.on_b) * rate;
@@ -132,6 +149,7 @@ void WorldState<D>::remove_joint(std::uint32_t joint) {
         names_it&& other != joint ? remove_joint(other) : void(++i);
     }
     std::erase_if(couplings, [&](const CouplingRecord<D>& c) { return c.joint == joint; });
+    expect_other_joints();
     const JointRecord<D>& record = joints[joint];
     wake_both(*this, record);
     if (record.body_a != no_body) bonds.remove(joint);
@@ -264,6 +282,7 @@ template <int D>
 JointId<D> World<D>::add_joint(const JointDefinition<D>& definition) {
     WorldState<D>& w = *state_;
     NewJoint<D> made = make_joint(w, definition);
+    w.expect_other_joints();
     const std::uint32_t i = w.joint_slots.acquire();
     if (i == w.joints.size()) {
         w.joints.emplace_back();
@@ -295,6 +314,7 @@ void World<D>::set_joint(JointId<D> joint, const decltype(JointDefinition<D>::ki
     if (kind.index() != w.joint_definitions[i].kind.index())
         throw Error("kind: the joint is of another type");
     if (w.coupling_of(i)) throw Error("kind: pulleys, gears and racks do not change");
+    w.expect_other_joints();
     JointRecord<D> changed = w.joints[i];
     std::visit(
         [&](const auto& k) {
@@ -450,10 +470,11 @@ Angular<D> World<D>::joint_torque(JointId<D> joint) const {
 template class World<2>;
 template class World<3>;
 
-#define CAROM_INSTANTIATE(D)                                   \
-    template void detail::WorldState<D>::list_active_joints(); \
-    template void detail::WorldState<D>::wake_jointed();       \
-    template void detail::WorldState<D>::break_joints(double); \
+#define CAROM_INSTANTIATE(D)                                    \
+    template void detail::WorldState<D>::expect_other_joints(); \
+    template void detail::WorldState<D>::list_active_joints();  \
+    template void detail::WorldState<D>::wake_jointed();        \
+    template void detail::WorldState<D>::break_joints(double);  \
     template void detail::WorldState<D>::remove_joints_of(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

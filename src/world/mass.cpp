@@ -113,6 +113,8 @@ void WorldState<D>::update_mass(std::uint32_t body) {
         for (int i = 0; i < D; ++i) far[i] = std::max(m.center[i] - box.lower[i], box.upper[i] - m.center[i]);
         m.radius = std::max(m.radius, length(far));
     }
+    measure_extents(body);
+    expect_other_joints();
 }
 
 template MassProperties<2> body_mass(BodyType, const MassOverrides<2>&, ShapesOf<2>);

@@ -13,6 +13,10 @@ namespace carom::detail {
 /// together without overlap.
 constexpr double speculative_distance = 0.02;
 
+/// A core of a shape that comes no further within a step than this share of its radius passes through
+/// nothing.
+constexpr double seen_share = 0.25;
+
 /// From this restitution on, what is struck within a step is followed to what it strikes in the same step.
 /// Blows that bounce less are not passed on far, and a crowd of dull things should not pay for that.
 constexpr double lively_restitution = 0.3;

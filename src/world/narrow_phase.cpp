@@ -175,7 +175,7 @@ void WorldState<D>::collide(double dt) {
     const ApartLimits<float> limits{static_cast<float>(speculative_distance),
                                     static_cast<float>(0.5 * speculative_distance), static_cast<float>(dt),
                                     static_cast<float>(length(definition.gravity) * dt * dt)};
-    for (const std::uint32_t i : apart.find_near(states, limits, scheduler.get())) loosen(i);
+    for (const std::uint32_t i : apart.find_near(states, lane_shapes, limits, scheduler.get())) loosen(i);
     run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             ContactRecord<D>& c = contacts[loose[k]];

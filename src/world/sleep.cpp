@@ -73,12 +73,20 @@ void WorldState<D>::wake_touched(double dt) {
     if (to_wake.empty()) return;
     wake_islands();
     std::ranges::sort(roused);
+    const std::size_t listed = awake.size();
     for (const std::uint32_t i : roused) list_awake(i);
     roused.clear();
+    keep_states(listed);
     follow_bodies();
 }
 
 namespace {
+
+/// The greatest speed that a point of the body may have.
+template <int D>
+double outer_speed(const BodyState<D>& s, double radius) {
+    return length(s.velocity) + std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity)) * radius;
+}
 
 /// How far the body came since it was last known to be at rest: its way, and that of its outermost point as
 /// it turned.
@@ -96,8 +104,7 @@ bool WorldState<D>::note_rest(std::uint32_t body, double dt) {
     BodyInfo<D>& info = infos[body];
     if (types[body] != BodyType::dynamic || info.disabled) return false;
     const double radius = masses[body].radius;
-    const double spin = std::sqrt(angular_dot(s.angular_velocity, s.angular_velocity));
-    const bool slow = length(s.velocity) + spin * radius < sleep_speed;
+    const bool slow = outer_speed(s, radius) < sleep_speed;
     if (!slow || !info.can_sleep || info.rest_time == 0 || way_since_rest(s, info, radius) > sleep_way) {
         info.rest = {s.position, s.rotation};
         info.rest_time = slow && info.can_sleep ? dt : 0;
@@ -112,8 +119,11 @@ bool WorldState<D>::note_rest(std::uint32_t body, double dt) {
 template <int D>
 void WorldState<D>::fall_asleep(double dt) {
     if (!definition.sleep) return;
-    rest.clear();
-    for (const std::uint32_t i : awake) rest.push_back(note_rest(i, dt) ? Rest::possible : Rest::none);
+    rest.resize(awake.size());
+    each_awake([&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            rest[k] = note_rest(awake[k], dt) ? Rest::possible : Rest::none;
+    });
     for (std::size_t k = 0; k < awake.size(); ++k) {
         if (rest[k] != Rest::possible) continue;
         const bool rests = gather_resting(awake[k]);
@@ -149,6 +159,76 @@ bool WorldState<D>::gather_resting(std::uint32_t body) {
     }
     return all;
 }
+
+namespace {
+
+/// Does a motor of the joint push the body about?
+template <int D>
+bool drives(const JointDefinition<D>& joint, BodyId<D> body) {
+    if (joint.b != body && joint.a != body) return false;
+    const auto pushes = [](const std::optional<JointMotor>& motor) {
+        return motor && motor->max > 0 && (motor->speed != 0 || motor->target);
+    };
+    const auto visit = [&](const auto& kind) {
+        using Kind = std::decay_t<decltype(kind)>;
+        if constexpr (std::is_same_v<Kind, MotorJoint<D>> || std::is_same_v<Kind, TargetJoint<D>>)
+            return true;
+        else if constexpr (requires { kind.motor; })
+            return pushes(kind.motor);
+        else
+            return false;
+    };
+    return std::visit(visit, joint.kind);
+}
+
+/// What about the body itself keeps it awake: nothing where it has rested long enough, or does not count.
+template <int D>
+Wakefulness own_reason(const WorldState<D>& w, std::uint32_t body) {
+    if (!w.is_moving(body)) return Wakefulness::none;
+    if (w.types[body] != BodyType::dynamic) return Wakefulness::moving;
+    const BodyInfo<D>& info = w.infos[body];
+    if (!w.definition.sleep || !info.can_sleep) return Wakefulness::sleep_off;
+    if (outer_speed(w.states[body], w.masses[body].radius) < sleep_speed)
+        return info.rest_time < time_to_sleep ? Wakefulness::settling : Wakefulness::none;
+    const BodyId<D> id = w.body_slots.template id<BodyId<D>>(body);
+    const bool driven = std::ranges::any_of(
+        w.joint_ids, [&](JointId<D> joint) { return drives<D>(w.joint_definitions[joint.index], id); });
+    return driven ? Wakefulness::driven : Wakefulness::moving;
+}
+
+}  // namespace
+}  // namespace carom::detail
+
+namespace carom {
+
+template <int D>
+AwakeReason<D> World<D>::awake_reason(BodyId<D> body) const {
+    const detail::WorldState<D>& w = *state_;
+    const std::uint32_t start = w.index(body);
+    if (w.types[start] != BodyType::dynamic || !w.is_awake(start)) return {};
+    if (const Wakefulness own = detail::own_reason(w, start); own != Wakefulness::none) return {own};
+    // Outwards through what hangs together, until a body turns up that does not rest.
+    std::vector<std::uint32_t> island{start};
+    std::vector<bool> seen(w.states.size());
+    seen[start] = true;
+    AwakeReason<D> reason{Wakefulness::settling};
+    for (std::size_t i = 0; i < island.size() && !reason.because_of; ++i)
+        w.each_tied(island[i], [&](std::uint32_t other) {
+            if (seen[other] || !w.is_moving(other) || reason.because_of) return;
+            seen[other] = true;
+            island.push_back(other);
+            if (detail::own_reason(w, other) != Wakefulness::none)
+                reason = {Wakefulness::neighbour, w.body_slots.template id<BodyId<D>>(other)};
+        });
+    return reason;
+}
+
+template AwakeReason<2> World<2>::awake_reason(BodyId<2>) const;
+template AwakeReason<3> World<3>::awake_reason(BodyId<3>) const;
+
+}  // namespace carom
+
+namespace carom::detail {
 
 #define CAROM_INSTANTIATE(D)                                     \
     template void WorldState<D>::wake(std::uint32_t);            \

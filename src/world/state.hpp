@@ -49,6 +49,24 @@ enum : std::uint8_t {
     moves_freely,   ///< dynamic and awake
 };
 
+/// Where a shape may be on its body, as is asked for each that moves: in a box in the axes of the body, grown
+/// by a radius.
+template <int D>
+struct Extent {
+    Vec<D> middle{}, half{};  ///< the box; its middle from the centre of mass
+    double radius = 0;
+    double arm = 0;        ///< a point of it comes no further than this by a turn of one radian
+    double to_strike = 0;  ///< margin that it needs because it may bounce
+};
+
+/// What a step made of a body.
+enum Outcome : std::uint8_t {
+    went_far = 1,     ///< it may have passed through something
+    went_wrong = 2,   ///< its state is not finite
+    went_astray = 4,  ///< it is not where its velocity at the start of the step would have brought it
+    was_stopped = 8,  ///< it was put back since that was asked
+};
+
 /// What is known of a body while islands at rest are looked for.
 enum class Rest : std::uint8_t {
     none,      ///< it stays awake
@@ -119,7 +137,10 @@ struct WorldState {
     std::vector<BodyMass<D>> masses;
     std::vector<BodyType> types;
     std::vector<BodyInfo<D>> infos;
-    std::vector<Load<D>> applied;     ///< the user's forces for the next step
+    std::vector<Load<D>> applied;           ///< the user's forces for the next step
+    std::vector<std::uint32_t> applied_to;  ///< the bodies that have some, among others
+    std::vector<std::uint32_t>
+        only_shape;                   ///< index of the shape of a body that has one alone, or `no_shape`
     std::vector<BodyId<D>> body_ids;  ///< all that are in use, oldest first
     Blueprint<D> blueprint;
     std::vector<std::uint32_t> movable;  ///< indices of the dynamic and kinematic ones, oldest first
@@ -128,10 +149,12 @@ struct WorldState {
     Slots shape_slots;
     std::vector<ShapeRecord<D>> shapes;
     std::vector<Company> company;              ///< by shape
+    std::vector<Extent<D>> extents;            ///< by shape
     std::array<Tree<D>, 3> trees;              ///< of shapes, by `TreeKind`
     std::vector<TreeKind> tree_of;             ///< by body: where its shapes are
     std::vector<OuterBox<D>> fat_boxes;        ///< by shape
     std::vector<std::uint8_t> has_new_box;     ///< by shape: its fat box changed since pairs were last found
+    std::vector<std::uint8_t> renewed;         ///< by place in `awake`: has any of its shapes a new box?
     std::vector<std::uint32_t> moved_shapes;   ///< those that have one
     std::vector<std::uint32_t> moving_shapes;  ///< those of the bodies that move in this step
     std::vector<std::int32_t> new_leaves;      ///< leaves of moving shapes with new boxes
@@ -186,11 +209,14 @@ struct WorldState {
     std::vector<std::uint32_t> flying;            ///< indices of the dynamic bodies that nothing touches
     std::vector<std::uint32_t> active_joints;     ///< indices of the joints that the solver sees
     std::vector<std::uint32_t> active_couplings;  ///< the same in `couplings`
+    std::vector<std::uint32_t> breakable_joints;  ///< those of both that may break, by index
+    bool joints_are_listed = false;               ///< in these three, as they are now
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
-    std::vector<BodyState<D>> before;  ///< states of `awake` at the start of the step
-    std::vector<std::uint32_t> place;  ///< in `awake` and `before`, by body index, of those that are there
+    std::vector<BodyState<D>> before;    ///< states of `awake` at the start of the step
+    std::vector<std::uint8_t> outcomes;  ///< by place in `awake`: of this step, bits of `Outcome`
+    std::vector<std::uint32_t> place;    ///< in `awake` and `before`, by body index, of those that are there
     std::vector<FixedContact> fixed_contacts;      ///< of some bodies, by body, shape and fixed shape
     std::vector<ContactRecord<D>> patches_before;  ///< of shapes that have several, in the last step
     std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
@@ -207,16 +233,22 @@ struct WorldState {
     void begin_step(double dt);
     void list_moving();
     void list_awake(std::uint32_t body);
+    bool keep_states(std::size_t from);
     void sum_forces(double dt);
     void solve_constraints(double dt);
     void fly_free_bodies(double dt);
     void move_kinematic_bodies(double dt);
+    void judge_ways(double dt);
     void finish_bodies();
     void quarantine(std::uint32_t body);
 
     // boxes.cpp: where the shapes are.
+    void measure_extents(std::uint32_t body);
+    bool is_in_box(std::uint32_t shape, const Vec<D>& way, double turning, double further) const;
+    bool renew_boxes(std::uint32_t body, double dt, double falling);
     void refresh_boxes(double dt);
-    void keep_in_boxes(double dt);
+    bool is_as_foreseen(std::size_t place_in_awake, double turned, double dt) const;
+    void keep_in_boxes();
     TreeKind tree_for(std::uint32_t body) const;
     void change_tree(std::uint32_t body, TreeKind kind);
     void insert_leaf(std::uint32_t shape);
@@ -251,7 +283,8 @@ struct WorldState {
     void take_loose();
     void follow_bodies();
     std::optional<Carrying<D>> carrying(std::uint32_t contact);
-    bool can_stay_apart(const ContactRecord<D>& contact, const ContactCache<D>& cache) const;
+    bool stays_apart(std::uint32_t contact);
+    LanePair<D> lane_pair(const ContactRecord<D>& contact);
     void leave_apart(std::uint32_t contact);
     void place_contacts();
     ContactRecord<D> current(std::uint32_t contact) const;
@@ -317,6 +350,7 @@ struct WorldState {
     void each_tied(std::uint32_t body, const Visit& visit) const;
 
     // joints.cpp: what binds bodies.
+    void expect_other_joints();
     void list_active_joints();
     void wake_jointed();
     void break_joints(double dt);
@@ -351,6 +385,19 @@ struct WorldState {
         if (types[body] == BodyType::dynamic) return is_awake(body);
         return types[body] == BodyType::kinematic &&
                (states[body].velocity != Vec<D>{} || states[body].angular_velocity != Angular<D>{});
+    }
+    /// Calls `visit(shape)` for each shape of the body.
+    template <class Visit>
+    void each_shape_of(std::uint32_t body, const Visit& visit) const {
+        if (only_shape[body] != no_shape) return visit(only_shape[body]);
+        for (const ShapeId<D>& id : infos[body].shapes) visit(id.index);
+    }
+    static constexpr std::uint32_t no_shape = ~std::uint32_t{0};
+    /// Runs `work(begin, end)` over the places of `awake`, a stretch a worker.
+    template <class Work>
+    void each_awake(Work&& work) {
+        constexpr std::size_t worth_a_worker = 512;
+        run_range(scheduler.get(), awake.size(), worth_a_worker, work);
     }
     /// The index behind a handle; throws `Error` when it names nothing.
     std::uint32_t index(BodyId<D> body) const;

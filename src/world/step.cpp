@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "math/check.hpp"
+#include "world/meeting.hpp"
 #include "world/state.hpp"
 
 namespace carom::detail {
@@ -69,6 +70,7 @@ constexpr Stage<D> stages[] = {
     {"solve_constraints", &WorldState<D>::solve_constraints},  // bodies in contact or on joints: the solver
     {"fly_free_bodies", &WorldState<D>::fly_free_bodies},      // all others: the integrator
     {"move_kinematic_bodies", &WorldState<D>::move_kinematic_bodies},  // what only the user moves
+    {"judge_ways", &WorldState<D>::judge_ways},                        // who came far, or not where foreseen
     {"stop_at_obstacles", &WorldState<D>::stop_at_obstacles},  // nothing passes through what stands still
     {"finish_bodies", &WorldState<D>::finish_bodies},          // quarantine, list of moved bodies
     {"keep_in_boxes", &WorldState<D>::keep_in_boxes},          // queries find the bodies where they are now
@@ -137,32 +139,56 @@ void WorldState<D>::list_moving() {
     roused.insert(roused.end(), awake.begin(), awake.end());
     if (!std::ranges::is_sorted(roused)) std::ranges::sort(roused);
     awake.clear();
-    before.clear();
     for (const std::uint32_t i : roused) {
         if (moving[i] != stands_still) continue;  // listed twice
-        if (tree_for(i) == of_moving && is_absurd(states[i])) quarantine(i);
-        if (tree_for(i) == of_moving)
+        const TreeKind kind = tree_for(i);
+        if (kind == of_moving)
             list_awake(i);
         else
-            change_tree(i, tree_for(i));
+            change_tree(i, kind);
     }
     roused.clear();
+    if (keep_states(0)) return;
+    for (const std::uint32_t i : awake) {
+        if (is_absurd(states[i])) quarantine(i);
+    }
+    list_moving();
+}
+
+/// Brings `before` up to date with `awake`, from a place on. Returns whether all states are such that one can
+/// work with them.
+template <int D>
+bool WorldState<D>::keep_states(std::size_t from) {
+    std::atomic<bool> all_well = true;
+    before.resize(awake.size());
+    each_awake([&](std::size_t begin, std::size_t end) {
+        bool well = true;
+        for (std::size_t k = std::max(begin, from); k < end; ++k) {
+            before[k] = states[awake[k]];
+            well &= !is_absurd(before[k]);
+        }
+        if (!well) all_well.store(false, std::memory_order_relaxed);
+    });
+    return all_well;
 }
 
 template <int D>
 void WorldState<D>::list_awake(std::uint32_t body) {
     change_tree(body, of_moving);
     awake.push_back(body);
-    before.push_back(states[body]);
     place[body] = static_cast<std::uint32_t>(awake.size() - 1);
     moving[body] = types[body] == BodyType::dynamic ? moves_freely : moved_by_user;
 }
 
 template <int D>
 void WorldState<D>::sum_forces(double dt) {
-    for (const std::uint32_t i : awake) varies[i] = 0;
+    const LoadModel<D> model{definition.gravity, applied, awake, forces, solids()};
+    each_awake([&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) varies[awake[k]] = 0;
+        model.begin(masses, begin, end, loads);
+    });
     forces.mark_fields(time, awake, varies);
-    LoadModel<D>{definition.gravity, applied, awake, forces, solids()}.sum({states, masses}, time, loads, dt);
+    model.add({states, masses}, time, loads, dt);
 }
 
 template <int D>
@@ -186,8 +212,12 @@ void WorldState<D>::fly_free_bodies(double dt) {
         model.sum({states, masses}, time, loads);
         for (const std::uint32_t i : flying) varies[i] = 1;
     }
-    fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator);
-    for (const std::uint32_t i : awake) applied[i] = {};
+    fly<D>({flying, states, masses, loads, varies, model, time, dt}, definition.integrator, scheduler.get());
+    std::erase_if(applied_to, [&](std::uint32_t i) {
+        if (moving[i] == stands_still) return false;
+        applied[i] = {};
+        return true;
+    });
 }
 
 template <int D>
@@ -199,23 +229,44 @@ void WorldState<D>::move_kinematic_bodies(double dt) {
     }
 }
 
+/// How far each body came, and where it is, once for all who ask.
+template <int D>
+void WorldState<D>::judge_ways(double dt) {
+    outcomes.resize(awake.size());
+    moved_bodies.resize(awake.size());
+    each_awake([&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = awake[k];
+            const BodyState<D>&from = before[k], &to = states[i];
+            const BodyMass<D>& mass = masses[i];
+            const double turned = mass.radius * chord_between(from.rotation, to.rotation);
+            const bool far = length(to.position - from.position) + turned > seen_share * mass.core_radius;
+            outcomes[k] = static_cast<std::uint8_t>((far ? went_far : 0) | (finite(to) ? 0 : went_wrong) |
+                                                    (is_as_foreseen(k, turned, dt) ? 0 : went_astray));
+            moved_bodies[k] = {body_slots.template id<BodyId<D>>(i), infos[i].user_data, frame_of(i)};
+        }
+    });
+}
+
+/// What went wrong is put back, and is not among the moved bodies.
 template <int D>
 void WorldState<D>::finish_bodies() {
-    moved_bodies.clear();
     for (std::size_t k = 0; k < awake.size(); ++k) {
-        const std::uint32_t i = awake[k];
-        const BodyId<D> id = body_slots.template id<BodyId<D>>(i);
-        if (!finite(states[i])) {
-            states[i] = before[k];
-            quarantine(i);
-            continue;
+        if (!(outcomes[k] & (went_wrong | was_stopped))) continue;
+        if (!finite(states[awake[k]])) {
+            states[awake[k]] = before[k];
+            quarantine(awake[k]);
         }
-        moved_bodies.push_back({id, infos[i].user_data, frame_of(i)});
+        moved_bodies[k].transform = frame_of(awake[k]);
     }
+    if (quarantined.empty()) return;
+    std::erase_if(moved_bodies, [&](const MovedBody<D>& moved) { return infos[moved.body.index].disabled; });
 }
 
 template void WorldState<2>::list_awake(std::uint32_t);
 template void WorldState<3>::list_awake(std::uint32_t);
+template bool WorldState<2>::keep_states(std::size_t);
+template bool WorldState<3>::keep_states(std::size_t);
 template void WorldState<2>::step(double);
 template void WorldState<3>::step(double);
 

@@ -59,6 +59,7 @@ TEST(CommandLine, run_prints_a_summary) {
     EXPECT_NE(run.out.find("fall (2D)"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("bodies 3, shapes 3"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("steps 30"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("awake 2: 2 moving"), std::string::npos) << run.out;
     const Outcome quiet = carom(folder, "run " + scene + " --quiet");
     EXPECT_EQ(quiet.status, 0);
     EXPECT_EQ(quiet.out + quiet.error, "");

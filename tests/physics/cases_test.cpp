@@ -28,8 +28,8 @@ Output validate(const std::string& arguments) {
     return output;
 }
 
-const char* const names[] = {"A1", "A2", "A3",  "A4", "A5", "B1", "B2", "B3", "B4", "B6",
-                             "B7", "B8", "B15", "C1", "C2", "C3", "C5", "C6", "D4"};
+const char* const names[] = {"A1", "A2", "A3", "A4", "A5", "B1", "B2", "B3", "B4", "B6", "B7", "B8", "B15",
+                             "C1", "C2", "C3", "C5", "C6", "D4", "E1", "E2", "E3", "E4", "E5", "E6", "E7"};
 
 class PhysicsCase : public testing::TestWithParam<const char*> {};
 

@@ -74,7 +74,7 @@ struct Pairs {
     ApartStore<D> stored() const {
         ApartStore<D> store;
         for (std::uint32_t i = 0; i < caches.size(); ++i)
-            store.add(i, 2 * i, 2 * i + 1, caches[i], radii[2 * i], radii[2 * i + 1]);
+            store.add(i, 2 * i, 2 * i + 1, caches[i], radii[2 * i], radii[2 * i + 1], {});
         return store;
     }
     double gap_now(std::size_t i) const {
@@ -100,7 +100,7 @@ TYPED_TEST(Apart, WhatMayTouchIsFound) {
         for (const double way : {0.001, 0.03, 0.2}) {
             const Pairs<D> pairs(random, 100, 1e4, way, speed);
             ApartStore<D> store = pairs.stored();
-            const auto found = list(store.find_near(pairs.states, limits, nullptr));
+            const auto found = list(store.find_near(pairs.states, {}, limits, nullptr));
             ASSERT_TRUE(std::ranges::is_sorted(found));
             for (std::uint32_t i = 0; i < 100; ++i) {
                 const bool is_found = std::ranges::binary_search(found, i);
@@ -126,7 +126,7 @@ TYPED_TEST(Apart, TheSameAreFoundInLanesOfAnyWidth) {
         if (!can_run_lanes(width)) continue;
         set_lane_width(width);
         ApartStore<D> store = pairs.stored();
-        const auto found = list(store.find_near(pairs.states, limits, nullptr));
+        const auto found = list(store.find_near(pairs.states, {}, limits, nullptr));
         if (width == 1) expected = found;
         EXPECT_EQ(found, expected) << width;
     }
@@ -146,7 +146,7 @@ TYPED_TEST(Apart, ComeAndGo) {
     for (int round = 0; round < 2000; ++round) {
         const auto i = static_cast<std::uint32_t>(random.below(40));
         if (index[i] == ApartStore<D>::none) {
-            index[i] = store.add(i, 2 * i, 2 * i + 1, pairs.caches[i], 1, 1);
+            index[i] = store.add(i, 2 * i, 2 * i + 1, pairs.caches[i], 1, 1, {});
         } else {
             const std::uint32_t moved = store.remove(index[i]);
             if (moved != ApartStore<D>::none) index[moved] = index[i];
@@ -159,7 +159,7 @@ TYPED_TEST(Apart, ComeAndGo) {
             ASSERT_EQ(store.contact(index[k]), k);
             ASSERT_EQ(store.body_b(index[k]), 2 * k + 1);
         }
-        auto found = list(store.find_near(pairs.states, all, nullptr));
+        auto found = list(store.find_near(pairs.states, {}, all, nullptr));
         std::ranges::sort(found);
         ASSERT_EQ(found, present);
     }

@@ -73,7 +73,7 @@ TYPED_TEST(MarksIn, PointsAreCarriedAlongWithTheBodies) {
         ContactStore<D> store;
         store.set_passes(passes_of_width<D>(1));
         store.push(0, {1, 2, 0, 1}, 1);
-        const Carrying<D> carrying{c.cache};
+        const Carrying<D> carrying{c.cache, {}};
         store.write(0, c.record, &carrying);
         const std::array<BodyState<D>, 2> states{c.a_now, c.b_now};
         store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())}, nullptr, 1);
@@ -112,7 +112,7 @@ TYPED_TEST(MarksIn, WhatMovedTooFarIsFound) {
         ContactStore<D> store;
         store.set_passes(passes_of_width<D>(1));
         store.push(0, {1, 2, 0, 1}, 1);
-        const Carrying<D> carrying{c.cache};
+        const Carrying<D> carrying{c.cache, {}};
         store.write(0, c.record, &carrying);
         const std::array<BodyState<D>, 2> states{c.a_now, c.b_now};
         store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())}, nullptr,

@@ -10,6 +10,7 @@
 #include "collision/manifold.hpp"
 #include "collision/random.hpp"
 #include "simd/width.hpp"
+#include "solver/apart_store.hpp"
 #include "solver/contact_store.hpp"
 
 // Manifolds that lanes make anew, beside those of the routines for one pair.
@@ -108,9 +109,9 @@ std::vector<Remade> remake_all(const std::vector<Pair>& pairs, int width, const 
         states.push_back(p.a);
         states.push_back(p.b);
         store.push(i, {1, 2 + i, 2 * i, 2 * i + 1}, 1);
-        const Carrying<2> carrying{cache, shapes.find(2 * i, p.shape_a, p.mass_a),
-                                   shapes.find(2 * i + 1, p.shape_b, p.mass_b)};
-        EXPECT_TRUE(carrying.can_be_remade());
+        const Carrying<2> carrying{
+            cache, {shapes.find(2 * i, p.shape_a, p.mass_a), shapes.find(2 * i + 1, p.shape_b, p.mass_b)}};
+        EXPECT_TRUE(carrying.shapes);
         store.write(i, record, &carrying);
     }
     store.passes().refresh(store.span(), {reinterpret_cast<const double*>(states.data())}, shapes.data(),
@@ -238,6 +239,46 @@ TEST(Remake, TheCacheIsThatOfTheNewManifold) {
         EXPECT_GE(there, remade[i].record.count);
     }
     EXPECT_GT(kept, 20);
+}
+
+/// Pairs of which nothing is known are looked at in lanes: what is within reach is found, and what is not is
+/// known to be apart from then on.
+TEST(Remake, LanesFindWhatHoldsPairsApart) {
+    const std::vector<Pair> pairs = random_pairs(2000);
+    std::vector<std::uint32_t> expected;
+    for (const int width : {1, 4, 8, 16}) {
+        if (!can_run_lanes(width)) continue;
+        set_lane_width(width);
+        LaneShapes<2> shapes;
+        ApartStore<2> store;
+        std::vector<BodyState<2>> states;
+        for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+            const Pair& p = pairs[i];
+            states.insert(states.end(), {p.a, p.b});
+            store.add(i, 2 * i, 2 * i + 1, {}, p.mass_a.radius, p.mass_b.radius,
+                      {shapes.find(2 * i, p.shape_a, p.mass_a), shapes.find(2 * i + 1, p.shape_b, p.mass_b)});
+        }
+        const ApartLimits<float> limits{reach, 0.01f, 1.0f / 60, 0};
+        const auto near = store.find_near(states, shapes, limits, nullptr);
+        const std::vector<std::uint32_t> found(near.begin(), near.end());
+        if (width == 1) {
+            expected = found;
+            for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+                const double gap = pairs[i].gap();
+                if (std::fabs(gap - reach) > 1e-5) {
+                    EXPECT_EQ(std::ranges::binary_search(found, i), gap < reach) << i;
+                }
+            }
+        }
+        EXPECT_EQ(found, expected) << width;
+        // Hardly moved, and with a little less reach, none of those that were away is near.
+        for (std::uint32_t i = 0; i < pairs.size(); ++i) states[2 * i + 1].position += 1e-7 * Vec2{1, 1};
+        const auto later = store.find_near(states, shapes, {reach - 1e-5f, 0.01f, 1.0f / 60, 0}, nullptr);
+        for (const std::uint32_t i : later) EXPECT_TRUE(std::ranges::binary_search(expected, i)) << i;
+    }
+    set_lane_width(0);
+    EXPECT_GT(expected.size(), 1000u);
+    EXPECT_LT(expected.size(), 1900u);
 }
 
 /// A place that was given up is used again, and a shape that was forgotten is read anew.

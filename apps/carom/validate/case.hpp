@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "validate/figure.hpp"
+
 namespace carom::app {
 
 /// How close to the reference a result must be in every build (`hard`), and how close the most accurate
@@ -47,6 +49,7 @@ struct Case {
     std::string_view name;         ///< for example "A1"
     std::string_view description;  ///< a line
     std::vector<Result> (*measure)();
+    std::vector<Figure> (*figures)() = nullptr;  ///< what it looks like, for those that show it
 };
 
 /// All cases, in the order in which they run.

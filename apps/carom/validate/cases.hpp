@@ -24,5 +24,12 @@ std::vector<Result> falling_chain();
 std::vector<Result> simple_machines();
 std::vector<Result> heavy_end();
 std::vector<Result> floating_bodies();
+std::vector<Result> pulled_slab();
+std::vector<Result> rocking_blocks();
+std::vector<Result> dominoes();
+std::vector<Result> masonry_arch();
+std::vector<Result> heap_of_balls();
+std::vector<Result> crank_and_slider();
+std::vector<Result> spinning_tops();
 
 }  // namespace carom::app

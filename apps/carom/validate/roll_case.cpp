@@ -54,7 +54,7 @@ void add_slip_to_roll(std::vector<Result>& results, const Round<D>& round) {
     for (double last = slip();; last = slip()) {
         const double last_speed = speed();
         world.step(frame);
-        if (slip() < 1e-3 * v0) break;
+        if (!(slip() >= 1e-3 * v0)) break;
         const double rate = (last - slip()) / frame, left = slip() / rate;
         const double deceleration = (last_speed - speed()) / frame;
         time = world.time() + left;

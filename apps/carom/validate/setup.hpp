@@ -3,12 +3,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "carom/world.hpp"
+#include "subject.hpp"
 #include "validate/case.hpp"
 
 /// What the cases share: the step of a game, and motion in the x-y plane of either dimension, where a slope
 /// descends along x and bodies roll about the axis out of the plane.
 namespace carom::app {
+
+using subject::World;
+using subject::World2;
+using subject::World3;
 
 constexpr double g = 9.81;          // m/s², the world's default
 constexpr double frame = 1.0 / 60;  // s, the step of a game
