@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "carom/ids.hpp"
 #include "carom/rotation.hpp"
@@ -148,6 +150,53 @@ struct RackJoint {
     double ratio = 1;  ///< m/rad, not zero
 };
 
+/// A hinge that turns one way only: a pawl falls behind each tooth that passes. Coordinate: the angle.
+template <int D>
+struct RatchetJoint {
+    Vec<D> anchor{};
+    Vec3 axis{0, 0, 1};     ///< 3D; any length but zero
+    double pitch = 0;       ///< angle from tooth to tooth, rad; with 0 it holds wherever it is
+    bool backward = false;  ///< it turns towards negative angles
+    std::optional<JointMotor> motor{};
+    std::optional<JointSpring> spring{};
+};
+
+/// Keeps a point of b on a curve that is fixed in a; b may turn as it likes. Coordinate: the way along the
+/// curve from its first point on; on a loop it counts on from round to round.
+template <int D>
+struct PathJoint {
+    std::vector<Vec<D>> points{};  ///< at least two; neighbours are not the same
+    bool loop = false;             ///< does the last point lead to the first?
+    bool smooth = true;  ///< a Catmull–Rom spline through the points; else straight from point to point
+    std::optional<Vec<D>> anchor{};  ///< of b; its centre of mass when left out. It is drawn to the path.
+    std::optional<JointLimits> limits{};  ///< m; an open path ends at its ends when left out
+    std::optional<JointMotor> motor{};
+    std::optional<JointSpring> spring{};
+};
+
+/// What a generic joint does about a way along or a turn about one axis. Without anything it is free.
+struct JointAxis {
+    std::optional<JointLimits> limits = JointLimits{0, 0};  ///< m or rad; locked at first
+    std::optional<JointMotor> motor{};
+    std::optional<JointSpring> spring{};
+};
+
+/// A joint of which each way and turn is locked, limited, free, driven or sprung by itself. Its axes are
+/// those of a; turns are the components of the turn of b against a as a rotation vector (axis times angle,
+/// within ±π unless the other two are zero). Coordinate: the way along the first axis.
+template <int D>
+struct GenericJoint {
+    Vec<D> anchor{};
+    Vec<D> axis = [] {
+        Vec<D> x{};
+        x.x = 1;
+        return x;
+    }();                        ///< the first; any length but zero
+    Vec3 second_axis{0, 1, 0};  ///< 3D: made perpendicular to the first
+    std::array<JointAxis, D> ways{};
+    std::array<JointAxis, D == 2 ? 1 : 3> turns{};
+};
+
 /// Drives b to a pose in the frame of a, by limited force and torque.
 template <int D>
 struct MotorJoint {
@@ -181,7 +230,8 @@ struct ParallelJoint {
 template <int D>
 struct JointDefinition {
     std::variant<HingeJoint<D>, SliderJoint<D>, BallJoint<D>, WeldJoint<D>, DistanceJoint<D>, WheelJoint<D>,
-                 MotorJoint<D>, TargetJoint<D>, ParallelJoint<D>, PulleyJoint<D>, GearJoint<D>, RackJoint<D>>
+                 MotorJoint<D>, TargetJoint<D>, ParallelJoint<D>, PulleyJoint<D>, GearJoint<D>, RackJoint<D>,
+                 RatchetJoint<D>, PathJoint<D>, GenericJoint<D>>
         kind{};
     std::optional<BodyId<D>> a{};  ///< the world when left out
     BodyId<D> b{};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "math/dim.hpp"
@@ -31,7 +32,7 @@ enum class AngularPart : std::uint8_t {
 /// The arithmetic of a coordinate that may be limited, driven and sprung.
 enum class DriveKind : std::uint8_t { turn, slide, stretch };
 
-constexpr int most_drives = 3;
+constexpr int most_drives = 6;
 
 struct Layout {
     LinearPart linear = LinearPart::none;
@@ -54,20 +55,37 @@ constexpr auto layouts = [] {
     using enum DriveKind;
     using A = AngularPart;
     if constexpr (D == 2) {
-        return std::array{layout(point, A::none),         layout(point, A::none, turn),
-                          layout(point, A::locked),       layout(point, A::held),
-                          layout(held, A::none),          layout(held, A::locked),
-                          layout(held, A::held),          layout(none, A::locked),
-                          layout(none, A::held),          layout(none, A::none, stretch),
-                          layout(line, A::locked, slide), layout(line, A::none, slide, turn)};
+        return std::array{layout(point, A::none),
+                          layout(point, A::none, turn),
+                          layout(point, A::locked),
+                          layout(point, A::held),
+                          layout(held, A::none),
+                          layout(held, A::locked),
+                          layout(held, A::held),
+                          layout(none, A::locked),
+                          layout(none, A::held),
+                          layout(none, A::none, stretch),
+                          layout(line, A::locked, slide),
+                          layout(line, A::none, slide, turn),
+                          layout(none, A::none, slide, stretch),
+                          layout(none, A::none, slide, slide, turn)};
     } else {
-        return std::array{layout(point, A::none),         layout(point, A::held, turn, turn),
-                          layout(point, A::across),       layout(point, A::across, turn),
-                          layout(point, A::locked),       layout(point, A::held),
-                          layout(held, A::none),          layout(held, A::locked),
-                          layout(held, A::held),          layout(none, A::across),
-                          layout(none, A::held),          layout(none, A::none, stretch),
-                          layout(line, A::locked, slide), layout(line, A::square, slide, turn, turn)};
+        return std::array{layout(point, A::none),
+                          layout(point, A::held, turn, turn),
+                          layout(point, A::across),
+                          layout(point, A::across, turn),
+                          layout(point, A::locked),
+                          layout(point, A::held),
+                          layout(held, A::none),
+                          layout(held, A::locked),
+                          layout(held, A::held),
+                          layout(none, A::across),
+                          layout(none, A::held),
+                          layout(none, A::none, stretch),
+                          layout(line, A::locked, slide),
+                          layout(line, A::square, slide, turn, turn),
+                          layout(none, A::none, slide, stretch, slide),
+                          layout(none, A::none, slide, slide, slide, turn, turn, turn)};
     }
 }();
 
@@ -82,17 +100,22 @@ constexpr int layout_index(const Layout& wanted) {
 
 /// What a coordinate means.
 enum class Measure : std::uint8_t {
-    twist,    ///< turn about the x axes
-    swing,    ///< 3D: angle between the x axes
-    spin,     ///< 3D: turn about the y axis of b against the x axis of a
-    steer,    ///< 3D: turn of the y axis of b about the x axis of a
+    twist,   ///< turn about the x axes
+    swing,   ///< 3D: angle between the x axes
+    spin,    ///< 3D: turn about the y axis of b against the x axis of a
+    steer,   ///< 3D: turn of the y axis of b about the x axis of a
+    turn_x,  ///< 3D: along the x axis of a, of the turn of b against a as a rotation vector
+    turn_y,  ///< the same along the y axis
+    turn_z,
     along,    ///< way along the x axis of a
+    along_y,  ///< the same along the y axis
+    along_z,
     stretch,  ///< distance of the anchors
 };
 
 constexpr DriveKind kind_of(Measure measure) {
-    if (measure == Measure::along) return DriveKind::slide;
-    return measure == Measure::stretch ? DriveKind::stretch : DriveKind::turn;
+    if (measure == Measure::stretch) return DriveKind::stretch;
+    return measure >= Measure::along ? DriveKind::slide : DriveKind::turn;
 }
 
 /// A spring as the user gives it; none where the frequency is zero.
@@ -105,6 +128,9 @@ struct SpringSettings {
     double substep = 0, stiffness = 0, damping = 0;
 };
 
+/// A limit that follows the coordinate one way.
+enum class Pawl : std::uint8_t { none, holds_below, holds_above };
+
 /// What a coordinate of a joint may be and what drives it.
 struct DriveSettings {
     Measure measure = Measure::twist;
@@ -112,8 +138,10 @@ struct DriveSettings {
     double high = std::numeric_limits<double>::infinity();
     SpringSettings spring;
     double motor_speed = 0, motor_most = 0;  ///< no motor where the most is zero
-    double zero = 0;                         ///< what is subtracted from the raw measure
-    double coordinate = 0;                   ///< as last measured: whole turns are counted from there
+    Pawl pawl = Pawl::none;
+    double pitch = 0;       ///< from tooth to tooth; the pawl holds anywhere where it is zero
+    double zero = 0;        ///< what is subtracted from the raw measure
+    double coordinate = 0;  ///< as last measured: whole turns are counted from there
 };
 
 /// Settings of the parts that are held by springs.
@@ -130,7 +158,22 @@ struct Wrench {
     Angular<D, F> on_a{}, on_b{};
 };
 
-constexpr int most_kept = 18;  ///< floats
+constexpr int most_kept = 24;  ///< floats
+
+/// Where the impulses of a drive are among those that are kept, in a joint of drives alone.
+constexpr std::size_t kept_of_drive(int drive) { return 4 * static_cast<std::size_t>(drive); }
+
+template <int D>
+class Curve;
+
+/// Of a joint along a path: the path in the frame of a, and where on it the joint is.
+template <int D>
+struct PathState {
+    std::shared_ptr<const Curve<D>> curve;  ///< none for other joints
+    double place = 0;
+    double rounds = 0;  ///< of a closed path
+    Vec<D> normal{};    ///< to the side to which it bends there
+};
 
 constexpr std::uint32_t no_body = 0xffffffffu;
 
@@ -147,6 +190,7 @@ struct JointRecord {
     Rotation<D> frame_a{}, frame_b{};  ///< the joint's frame in those of the bodies
     std::vector<DriveSettings> drives;
     HeldSettings held;
+    PathState<D> path;
     Wrench<D, float> wrench{};  ///< impulse of the last sub-step, N·s: force, and torques about the centres
     Wrench<D, float> before{};  ///< the same of the sub-step before that
     Wrench<D, float> total{};   ///< impulse of the whole last step

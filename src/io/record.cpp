@@ -1,5 +1,7 @@
 #include "io/record.hpp"
 
+#include "io/record_links.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -190,6 +192,8 @@ Recorder<D>::Recorder(const Scene& scene, const SceneWorld<D>& built) : bodies_(
     replay_.step = scene.step;
     replay_.gravity = vector_of(data.world.gravity);
     replay_.links = links_of(data);
+    const std::vector<ReplayLink> of_joints = joint_links(built);
+    replay_.links.insert(replay_.links.end(), of_joints.begin(), of_joints.end());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const BodyId<D> id = bodies_[i];
         replay_.bodies.push_back(

@@ -178,6 +178,52 @@ Fields parallel_fields(const Names&, Kind<D>& kind) {
         return {direction("axis", joint.axis)};
 }
 
+template <int D>
+Fields ratchet_fields(const Names&, Kind<D>& kind) {
+    auto& joint = kind.template emplace<RatchetJoint<D>>();
+    return Fields{required("anchor", joint.anchor), not_negative("pitch", joint.pitch),
+                  field("backward", joint.backward), motor_field("motor", joint.motor),
+                  spring_field("spring", joint.spring)} +
+           in_space<D>({direction("axis", joint.axis)});
+}
+
+template <int D>
+Fields path_fields(const Names&, Kind<D>& kind) {
+    auto& joint = kind.template emplace<PathJoint<D>>();
+    return {required("points", joint.points),     field("loop", joint.loop),
+            field("smooth", joint.smooth),        field("anchor", joint.anchor),
+            limits_field("limits", joint.limits), motor_field("motor", joint.motor),
+            spring_field("spring", joint.spring)};
+}
+
+/// An axis of a generic joint is "locked", "free", or an object that says what it does.
+void read_axis(const Value& value, JointAxis& axis) {
+    axis.limits.reset();
+    if (value.json().is_object())
+        return read_object(value, {limits_field("limits", axis.limits), motor_field("motor", axis.motor),
+                                   spring_field("spring", axis.spring)});
+    const std::array<std::string_view, 2> names{"locked", "free"};
+    if (read_choice(value, names) == 0) axis.limits = JointLimits{0, 0};
+}
+
+template <std::size_t count>
+Field axes_field(std::string_view key, std::array<JointAxis, count>& axes) {
+    return {key, [&axes](const Value& value) {
+                if (!value.json().is_array() || value.json().size() != count)
+                    value.refuse(fmt::format("is not a list of {}", count));
+                std::size_t next = 0;
+                for_each_element(value, [&](const Value& axis) { read_axis(axis, axes[next++]); });
+            }};
+}
+
+template <int D>
+Fields generic_fields(const Names&, Kind<D>& kind) {
+    auto& joint = kind.template emplace<GenericJoint<D>>();
+    return Fields{required("anchor", joint.anchor), direction("axis", joint.axis),
+                  axes_field("ways", joint.ways), axes_field("turns", joint.turns)} +
+           in_space<D>({direction("second_axis", joint.second_axis)});
+}
+
 /// A type of joint: its name, a function that makes it and says how its fields are read, and whether it names
 /// bodies (or joints).
 template <int D>
@@ -188,7 +234,7 @@ struct JointType {
 };
 
 template <int D>
-constexpr std::array<JointType<D>, 12> joint_types = {{{"hinge", hinge_fields<D>},
+constexpr std::array<JointType<D>, 15> joint_types = {{{"hinge", hinge_fields<D>},
                                                        {"slider", slider_fields<D>},
                                                        {"ball", ball_fields<D>},
                                                        {"weld", weld_fields<D>},
@@ -199,7 +245,10 @@ constexpr std::array<JointType<D>, 12> joint_types = {{{"hinge", hinge_fields<D>
                                                        {"rack", coupled_fields<RackJoint<D>, D>, false},
                                                        {"motor", pose_fields<D>},
                                                        {"target", target_fields<D>},
-                                                       {"parallel", parallel_fields<D>}}};
+                                                       {"parallel", parallel_fields<D>},
+                                                       {"ratchet", ratchet_fields<D>},
+                                                       {"path", path_fields<D>},
+                                                       {"generic", generic_fields<D>}}};
 
 template <int D>
 const JointType<D>& read_type(const Value& value) {

@@ -16,7 +16,9 @@ JointRecord<D> end_at(const JointRecord<D>& joint, std::size_t drive) {
 
 template <int D>
 JointRecord<D> turning_end(const CoupledJoint<D>& joint, const char* field) {
-    if (std::holds_alternative<HingeJoint<D>>(joint.definition.kind)) return end_at(joint.record, 0);
+    const auto& kind = joint.definition.kind;
+    if (std::holds_alternative<HingeJoint<D>>(kind) || std::holds_alternative<RatchetJoint<D>>(kind))
+        return end_at(joint.record, 0);
     if (std::holds_alternative<WheelJoint<D>>(joint.definition.kind)) return end_at(joint.record, 1);
     throw Error(std::string(field) + ": is neither a hinge nor a wheel");
 }

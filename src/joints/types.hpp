@@ -21,6 +21,9 @@ CAROM_JOINT_TYPE(WheelJoint)
 CAROM_JOINT_TYPE(MotorJoint)
 CAROM_JOINT_TYPE(TargetJoint)
 CAROM_JOINT_TYPE(ParallelJoint)
+CAROM_JOINT_TYPE(RatchetJoint)
+CAROM_JOINT_TYPE(PathJoint)
+CAROM_JOINT_TYPE(GenericJoint)
 #undef CAROM_JOINT_TYPE
 
 }  // namespace carom::detail

@@ -338,14 +338,19 @@ void DirectSolver<D>::relax_group(const Group& group) {
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) lay<false>(joints_[k]);
     solve_as_laid(group);
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
-        DirectJoint<D>& joint = joints_[k];
-        const std::span<Row> rows = rows_of(joint);
-        joint.before = joint.wrench;
-        joint.wrench = {};
-        for (const Row& row : rows) add(joint.wrench, row.impulse * row.middle);
-        add(joint.total, joint.wrench);
-        for (std::size_t r = 0; r < rows.size(); ++r) joint.before_speed[r] = speed(joint, rows[r]);
+        joints_[k].before = joints_[k].wrench;
+        note_wrench(joints_[k]);
     }
+}
+
+/// What the joint does in this sub-step, and how fast its coordinates are at the end of it.
+template <int D>
+void DirectSolver<D>::note_wrench(DirectJoint<D>& joint) {
+    const std::span<Row> rows = rows_of(joint);
+    joint.wrench = {};
+    for (const Row& row : rows) add(joint.wrench, row.impulse * row.middle);
+    add(joint.total, joint.wrench);
+    for (std::size_t r = 0; r < rows.size(); ++r) joint.before_speed[r] = speed(joint, rows[r]);
 }
 
 template <int D>
@@ -355,6 +360,38 @@ void DirectSolver<D>::solve(const RecordView<D>& bodies, const Crew& crew) {
         gather_members(groups_[i], bodies);
         solve_group(groups_[i]);
         scatter_members(groups_[i], bodies, true);
+    }
+}
+
+template <int D>
+bool DirectSolver<D>::pick(std::span<const std::uint32_t> slots) {
+    constexpr std::uint32_t no_group = ~std::uint32_t{0};
+    picked_.clear();
+    for (const std::uint32_t slot : slots) {
+        if (group_of_[slot] != no_group) picked_.push_back(group_of_[slot]);
+    }
+    std::ranges::sort(picked_);
+    const auto doubles = std::ranges::unique(picked_);
+    picked_.erase(doubles.begin(), doubles.end());
+    return !picked_.empty();
+}
+
+template <int D>
+void DirectSolver<D>::settle(const RecordView<D>& bodies, bool before_moving) {
+    for (const std::uint32_t i : picked_) {
+        const Group& group = groups_[i];
+        gather_members(group, bodies);
+        // Impulses and speeds along the same directions take energy away, however often it is done.
+        for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
+            for (Row& row : rows_of(joints_[k])) row.end = row.middle;
+        }
+        solve_as_laid(group);
+        for (std::uint32_t k = group.first_joint; k < group.last_joint && !before_moving; ++k) {
+            DirectJoint<D>& joint = joints_[k];
+            add(joint.total, -1.0 * joint.wrench);
+            note_wrench(joint);
+        }
+        scatter_members(group, bodies, false);
     }
 }
 

@@ -47,6 +47,13 @@ class DirectSolver {
     void relax(const RecordView<D>& bodies, const Crew& crew);
     void store(const JointInput<D>& input, const Crew& crew) const;
 
+    // What the first worker does alone.
+
+    /// Picks the groups that hold one of these bodies. Are there any?
+    bool pick(std::span<const std::uint32_t> slots);
+    /// Solves them once more along the directions of the last pass.
+    void settle(const RecordView<D>& bodies, bool before_moving);
+
   private:
     using Row = DirectRow<D>;
     using Side = Wrench<D, double>;
@@ -101,6 +108,7 @@ class DirectSolver {
 
     void solve_group(const Group& group);
     void relax_group(const Group& group);
+    void note_wrench(DirectJoint<D>& joint);
     void solve_as_laid(const Group& group);
     void gather_members(const Group& group, const RecordView<D>& bodies);
     void scatter_members(const Group& group, const RecordView<D>& bodies, bool moved) const;
@@ -149,6 +157,8 @@ class DirectSolver {
     JointStep<double> step_{};
     std::vector<DirectJoint<D>> joints_;  ///< by group, in the order of elimination
     std::vector<Group> groups_;
+    std::vector<std::uint32_t> group_of_;  ///< by slot of a body that can be pushed
+    std::vector<std::uint32_t> picked_;    ///< groups
     std::vector<Member> members_;  ///< the bodies, by group; one that cannot be pushed may be in several
     std::vector<Tie> ties_;
     BlockMatrix matrix_;

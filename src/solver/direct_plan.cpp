@@ -32,6 +32,12 @@ void DirectSolver<D>::plan(const JointInput<D>& input, std::span<const std::uint
         const std::size_t end = i + 1 < group_starts.size() ? group_starts[i + 1] : joints.size();
         add_group(input, joints.subspan(group_starts[i], end - group_starts[i]));
     }
+    group_of_.assign(input.slots.size(), ~std::uint32_t{0});
+    for (std::uint32_t i = 0; i < groups_.size(); ++i) {
+        for (std::uint32_t k = groups_[i].first_body; k < groups_[i].last_body; ++k) {
+            if (members_[k].slot >= input.bodies.first_movable) group_of_[members_[k].slot] = i;
+        }
+    }
     std::vector<std::uint8_t> sizes;
     std::vector<NodePair> pairs;
     for (const DirectJoint<D>& j : joints_) sizes.push_back(static_cast<std::uint8_t>(j.row_count()));

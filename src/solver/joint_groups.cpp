@@ -120,6 +120,12 @@ bool JointGroups<D>::is_hard(std::span<const std::uint32_t> group) {
         return layouts<D>[ties_[i].layout].angular == AngularPart::locked;
     };
     if (group.size() > 2 && std::ranges::any_of(group, locks)) return true;
+    // What is made of drives alone is solved coordinate by coordinate in sweeps, which is good for few.
+    const auto is_made_of_drives = [&](std::uint32_t i) {
+        const Layout& l = layouts<D>[ties_[i].layout];
+        return l.linear == LinearPart::none && l.angular == AngularPart::none && l.drive_count > 1;
+    };
+    if (std::ranges::any_of(group, is_made_of_drives)) return true;
     const auto is_limited = [&](std::uint32_t i) { return ties_[i].is_limited; };
     if (group.size() > 1 && group.size() <= few && std::ranges::any_of(group, is_limited)) return true;
     return greatest_load(group, some_still) > most_load;

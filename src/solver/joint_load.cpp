@@ -43,6 +43,21 @@ double unwound(double angle, double before) {
     return angle + 2 * pi * std::floor((before - angle) / (2 * pi) + 0.5);
 }
 
+/// A component of the rotation vector θ, of which the rate is (1 − ½ θ× + c θ×²) ω, with c = (1 − ½ |θ| cot
+/// ½ |θ|) / |θ|².
+Measured<3> measure_turn_vector(const DriveSettings& drive, const JointPose<3>& pose) {
+    const int i = static_cast<int>(drive.measure) - static_cast<int>(Measure::turn_x);
+    const Vec3 turn = turn_between<3>(pose), axis = pose.axis_a(i);
+    const double part = dot(turn, axis), squared = dot(turn, turn);
+    double c = 1.0 / 12;
+    if (squared > 1e-6) {
+        const auto [sine, cosine] = sin_cos(0.5 * std::sqrt(squared));
+        c = (1 - 0.5 * std::sqrt(squared) * cosine / sine) / squared;
+    }
+    return {axis + 0.5 * cross(turn, axis) + c * (part * turn - squared * axis),
+            unwound(part - drive.zero, drive.coordinate), 0};
+}
+
 Measured<3> measure_turn(const DriveSettings& drive, const JointPose<3>& pose) {
     const Vec3 xa = pose.axis_a(0), xb = pose.axis_b(0);
     switch (drive.measure) {
@@ -60,6 +75,10 @@ Measured<3> measure_turn(const DriveSettings& drive, const JointPose<3>& pose) {
             const Vec3 axis = sine > 1e-6 ? across / sine : pose.axis_a(1);
             return {axis, atan2(sine, dot(xa, xb)), 0};
         }
+        case Measure::turn_x:
+        case Measure::turn_y:
+        case Measure::turn_z:
+            return measure_turn_vector(drive, pose);
         case Measure::steer: {
             const Vec3 yb = pose.axis_b(1);
             return {xa, atan2(dot(yb, pose.axis_a(2)), dot(yb, pose.axis_a(1))) - drive.zero, 0};
@@ -77,9 +96,9 @@ Measured<3> measure_turn(const DriveSettings& drive, const JointPose<3>& pose) {
 template <int D>
 Measured<D> measure(const DriveSettings& drive, const JointPose<D>& pose) {
     Measured<D> m;
-    if (drive.measure == Measure::along) {
-        m.axis = pose.axis_a(0);
-        m.value = dot(m.axis, pose.gap);
+    if (kind_of(drive.measure) == DriveKind::slide) {
+        m.axis = pose.axis_a(static_cast<int>(drive.measure) - static_cast<int>(Measure::along));
+        m.value = dot(m.axis, pose.gap) - drive.zero;
         m.speed = dot(m.axis, pose.speed_along_line());
     } else if (drive.measure == Measure::stretch) {
         m.value = length(pose.gap);
@@ -146,7 +165,7 @@ class BoundMass {
 
     double share_of(const Wrench<D, double>& row) const {
         const double alone = compliance(row, row);
-        double k[5][6];
+        double k[8][9];
         for (int i = 0; i < count_; ++i) {
             for (int j = 0; j < count_; ++j) k[i][j] = compliance(rows_[i], rows_[j]);
             k[i][count_] = compliance(rows_[i], row);
@@ -173,17 +192,37 @@ class BoundMass {
 
     double mass_a_ = 0, mass_b_ = 0;
     Inertia<D> inertia_a_{}, inertia_b_{};
-    Wrench<D, double> rows_[5];
+    Wrench<D, double> rows_[8];
     int count_ = 0;
 };
 
+/// A drive as a row.
+template <int D>
+Wrench<D, double> row_of(DriveKind kind, const Vec<D>& axis, const JointPose<D>& pose) {
+    if (kind == DriveKind::slide) return at_points<D>(axis, pose.arm_a + pose.gap, pose.arm_b);
+    if (kind == DriveKind::stretch) {
+        const double size = length(pose.gap);
+        return at_points<D>(size > 1e-6 ? pose.gap / size : Vec<D>{}, pose.arm_a, pose.arm_b);
+    }
+    if constexpr (D == 2)
+        return {{}, 1, 1};
+    else
+        return {{}, axis, axis};
+}
+
 /// The spring of a drive among the joint's rows.
 template <int D>
-double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveKind kind, const Vec<D>& axis,
-                   std::span<const BodyState<D>> states, std::span<const BodyMass<D>> masses) {
+double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, const DriveSettings& drive,
+                   const Vec<D>& axis, std::span<const BodyState<D>> states,
+                   std::span<const BodyMass<D>> masses) {
     const Layout& L = layouts<D>[joint.layout];
+    const DriveKind kind = kind_of(drive.measure);
     BoundMass<D> mass(joint, states, masses);
     const Vec<D> arm_on_line = pose.arm_a + pose.gap;
+    for (const DriveSettings& other : joint.drives) {
+        if (&other == &drive || !(other.low == other.high)) continue;
+        mass.add_row(row_of<D>(kind_of(other.measure), measure(other, pose).axis, pose));
+    }
     for (int i = 0; i < D; ++i) {
         Vec<D> unit{};
         unit[i] = 1;
@@ -193,7 +232,6 @@ double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveK
     }
     if constexpr (D == 2) {
         if (L.angular == AngularPart::locked) mass.add_row({{}, 1, 1});
-        if (kind == DriveKind::turn) return mass.share_of({{}, 1, 1});
     } else {
         for (int i = 0; i < 3; ++i) {
             const bool bound =
@@ -204,10 +242,8 @@ double bound_share(const JointRecord<D>& joint, const JointPose<D>& pose, DriveK
             const Vec3 n = cross(pose.axis_b(1), pose.axis_a(0));
             mass.add_row({{}, n, n});
         }
-        if (kind == DriveKind::turn) return mass.share_of({{}, axis, axis});
     }
-    if (kind == DriveKind::slide) return mass.share_of(at_points<D>(axis, arm_on_line, pose.arm_b));
-    return 1;
+    return kind == DriveKind::stretch ? 1 : mass.share_of(row_of<D>(kind, axis, pose));
 }
 
 }  // namespace
@@ -244,6 +280,22 @@ Angular<D> turn_between(const JointPose<D>& pose) {
     }
 }
 
+namespace {
+
+/// Brings the limit of a ratchet to the last tooth that has passed.
+void follow(DriveSettings& drive) {
+    if (drive.pawl == Pawl::none) return;
+    const double sign = drive.pawl == Pawl::holds_below ? 1 : -1;
+    const double way = sign * drive.coordinate;
+    const double held = sign * (drive.pitch > 0 ? drive.pitch * std::floor(way / drive.pitch) : way);
+    if (drive.pawl == Pawl::holds_below)
+        drive.low = std::max(drive.low, held);
+    else
+        drive.high = std::min(drive.high, held);
+}
+
+}  // namespace
+
 template <int D>
 DriveBase<D, float> drive_row(DriveSettings& drive, const JointRecord<D>& joint, const JointPose<D>& pose,
                               std::span<const BodyState<D>> states, std::span<const BodyMass<D>> masses,
@@ -252,13 +304,14 @@ DriveBase<D, float> drive_row(DriveSettings& drive, const JointRecord<D>& joint,
     const Measured<D> now = measure(drive, pose);
     DriveBase<D, float> row;
     drive.coordinate = now.value;
+    follow(drive);
     row.axis = narrow<float>(now.axis);
     // After many turns an angle is too large for a float; what is left to the limits is not.
-    const double start = kind == DriveKind::turn ? now.value : 0;
+    const double start = kind == DriveKind::turn ? now.value : kind == DriveKind::slide ? -drive.zero : 0;
     row.low = limited(drive.low - start);
     row.high = limited(drive.high - start);
     if (drive.spring.frequency != 0) {
-        const double share = bound_share<D>(joint, pose, kind, now.axis, states, masses);
+        const double share = bound_share<D>(joint, pose, drive, now.axis, states, masses);
         row.spring = spring_row(drive.spring, h, share);
         row.rest = static_cast<float>(drive.spring.rest - start);
     }
@@ -303,6 +356,8 @@ struct Load {
         }
         std::array<float, fields> all;
         std::memcpy(all.data(), &rows, sizeof rows);
+        // The first sub-step counts the impulses that are kept, which belong to the step before.
+        for (std::size_t f = 0; f < of_wrench; ++f) all[taken + f] = -to[(kept + f) * stride];
         for (std::size_t f = taken; f < fields; ++f) to[f * stride] = all[f];
     }
 
@@ -314,7 +369,8 @@ struct Load {
         std::memcpy(joint.kept.data(), &rows.kept, kept * sizeof(float));
         joint.wrench = rows.wrench;
         joint.before = rows.before;
-        joint.total = rows.total;
+        joint.total = {rows.total.force + rows.wrench.force, rows.total.on_a + rows.wrench.on_a,
+                       rows.total.on_b + rows.wrench.on_b};
     }
 
   private:

@@ -18,24 +18,33 @@ struct JointPass {
 
     CAROM_INLINE JointPass(JointRows<D, F, L>& all, Motion<D, F>& a, Motion<D, F>& b, const Weight<D, F>& wa,
                            const Weight<D, F>& wb, const JointStep<F>& sub)
-        : rows(all), link{a, b, wa, wb, all.wrench}, step(sub), turn_a(a, sub.h), turn_b(b, sub.h) {
+        : rows(all),
+          link{a, b, wa, wb, all.wrench},
+          step(sub),
+          turn_a(a, sub.again ? F(0) : sub.h),
+          turn_b(b, sub.again ? F(0) : sub.h) {
         if constexpr (has_anchors(L)) g = geometry<biased>(rows.anchors, turn_a, turn_b, a, b);
     }
 
     CAROM_INLINE void run() {
-        if constexpr (biased) re_aim();
+        if constexpr (biased) {
+            if (!step.again) re_aim();
+        }
         drive<0>();
         drive<1>();
         drive<2>();
+        drive<3>();
+        drive<4>();
+        drive<5>();
         solve_angular();
         solve_linear();
-        if constexpr (!biased) add(rows.total, rows.wrench);
     }
 
     /// Replaces what the kept impulses were on the bodies by what they are along the new directions, as far
     /// as they are steady (see `steady_share`).
     CAROM_INLINE void re_aim() {
         const Wrench<D, F> old = rows.wrench;
+        add(rows.total, old);
         keep(steady_share(link.likeness(old, old), link.likeness(old, rows.before)));
         rows.before = old;
         Wrench<D, F> now = linear_wrench();
@@ -43,6 +52,9 @@ struct JointPass {
         if constexpr (L.drive_count > 0) add(now, wrench_of<0>(rows.kept.drives[0].sum()));
         if constexpr (L.drive_count > 1) add(now, wrench_of<1>(rows.kept.drives[1].sum()));
         if constexpr (L.drive_count > 2) add(now, wrench_of<2>(rows.kept.drives[2].sum()));
+        if constexpr (L.drive_count > 3) add(now, wrench_of<3>(rows.kept.drives[3].sum()));
+        if constexpr (L.drive_count > 4) add(now, wrench_of<4>(rows.kept.drives[4].sum()));
+        if constexpr (L.drive_count > 5) add(now, wrench_of<5>(rows.kept.drives[5].sum()));
         link.add({now.force - old.force, now.on_a - old.on_a, now.on_b - old.on_b});
         rows.wrench = now;
     }

@@ -80,7 +80,8 @@ struct JointPassesIn {
             Vec<D, Wide<F>> anchor_a, anchor_b;
             gather_anchors(sites.anchors + k * width * JointSites<D>::anchor_stride, anchor_a, anchor_b);
             const Vec<D, Wide<F>> arm_a = rotate(a.rotation, anchor_a), arm_b = rotate(b.rotation, anchor_b);
-            rows[k].total = {};
+            const Wrench<D, F>& kept = rows[k].wrench;  // of the step before: see `Load::load`
+            rows[k].total = {-kept.force, -kept.on_a, -kept.on_b};
             rows[k].anchors = {rounded(arm_a), rounded(arm_b),
                                rounded(Vec<D, Wide<F>>((b.position - a.position) + (arm_b - arm_a)))};
         }
@@ -103,7 +104,7 @@ struct JointPassesIn {
     template <bool biased, Layout L>
     static void solve(const JointSpan& span, const RecordView<D>& bodies, const JointStep<float>& s) {
         using Rows = JointRows<D, F, L>;
-        const JointStep<F> step{F(s.h), F(s.inverse_h), F(s.share), F(s.most_way)};
+        const JointStep<F> step{F(s.h), F(s.inverse_h), F(s.share), F(s.most_way), s.again};
         each_block<Rows, biased>(
             span, bodies, [&](Rows& rows, Body<D, F>& a, Body<D, F>& b) CAROM_INLINE_LAMBDA {
                 JointPass<biased, D, F, L>(rows, a.motion, b.motion, a.weight, b.weight, step).run();

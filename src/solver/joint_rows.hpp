@@ -27,6 +27,9 @@ struct JointStep {
     F inverse_h{};
     F share{};     ///< of an error of position that is put right in a sub-step
     F most_way{};  ///< the furthest that something is put right in a sub-step, m and rad
+    /// Is it a further pass of the same sub-step? Then impulses and speeds are along the same directions, so
+    /// that passes can only take energy away, however many there are.
+    bool again = false;
 };
 
 // ---- What is kept from sub-step to sub-step, and from step to step: impulses of the rows ----
@@ -151,7 +154,7 @@ struct JointRows {
     KeptImpulses<D, F, L> kept{};
     Wrench<D, F> wrench{};  ///< what the impulses are on the bodies: as they were last applied
     Wrench<D, F> before{};  ///< the same in the sub-step before
-    Wrench<D, F> total{};   ///< sum over the sub-steps
+    Wrench<D, F> total{};   ///< sum over the sub-steps before
     [[no_unique_address]] std::conditional_t<has_anchors(L), Anchors<D, F>, Nothing<6>> anchors{};
     [[no_unique_address]] LinearBase<D, F, L.linear> linear{};
     [[no_unique_address]] AngularBase<D, F, L.angular> angular{};

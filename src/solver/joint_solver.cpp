@@ -24,6 +24,7 @@ bool JointSolver<D>::is_small() const {
 
 template <int D>
 void JointSolver<D>::plan(const JointInput<D>& input) {
+    first_movable_ = input.bodies.first_movable;
     couplings_.plan(input);
     direct_->set_step(input.substep);
     step_ = joint_step(input.substep);
@@ -34,6 +35,7 @@ void JointSolver<D>::plan(const JointInput<D>& input) {
     batches_.clear();
     joint_.clear();
     place_of_.assign(input.joints.size(), none);
+    ties_listed_ = false;
     if (groups_->plan(input)) direct_->plan(input, groups_->direct(), groups_->starts());
     if (groups_->iterative().empty()) return;
     JointInput<D> rest = input;

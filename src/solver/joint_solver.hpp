@@ -46,6 +46,18 @@ class JointSolver {
     /// One pass at the start of a sub-step, and one after positions were integrated.
     void solve(const RecordView<D>& bodies, const Crew& crew);
     void relax(const RecordView<D>& bodies, const Crew& crew);
+
+    // What the first worker does alone, in the middle of a sub-step.
+
+    /// Picks the joints that are near one of these bodies, so that they may come to agree with contacts that
+    /// were hit. Are there any?
+    bool pick_near(std::span<const std::uint32_t> slots);
+    /// Takes up the rows of the joints that were picked last.
+    void begin_settling();
+    /// Solves them once more, after `solve` or after `relax`.
+    void settle(const RecordView<D>& bodies, bool before_moving);
+    void end_settling();
+
     /// Gives the records of couplings, and of joints that are solved directly, their impulses.
     void store(const JointInput<D>& input, const Crew& crew) const;
 
@@ -77,10 +89,13 @@ class JointSolver {
     void load(const JointInput<D>& input, const Batch& batch, std::size_t block);
     const JointProgram<D>& program(const Batch& batch) const;
     JointSpan span(const Batch& batch, const Part& part);
+    void list_ties();
+    void copy_picked(bool back);
     float* rows(const Batch& batch) { return lines_[0].floats.data() + batch.first_float; }
     const float* rows(const Batch& batch) const { return lines_[0].floats.data() + batch.first_float; }
 
     JointStep<float> step_{};
+    std::uint32_t first_movable_ = 0;  ///< slot
     const JointPrograms<D>* wide_ = nullptr;
     std::vector<std::uint64_t> taken_;            ///< by slot: colours of its joints
     std::vector<std::uint8_t> colour_;            ///< by active joint
@@ -95,6 +110,22 @@ class JointSolver {
     bool is_fresh_ = false;                       ///< have they been, and have rows no impulses yet?
     bool holds_ = false;                          ///< have rows impulses that the records do not have?
     std::vector<Line> lines_;
+
+    /// Joints that were picked: of each batch some, close together.
+    struct Picked {
+        Batch batch;  ///< with places of its own
+        const Batch* from = nullptr;
+        std::uint32_t first = 0, count = 0;  ///< in `picked_`
+    };
+    std::vector<std::uint32_t> first_tie_, ties_;  ///< by slot: places of its joints
+    bool ties_listed_ = false;                     ///< in this step
+    std::vector<std::uint8_t> is_picked_;          ///< by place
+    std::vector<std::uint32_t> picked_, near_;     ///< places; slots
+    std::vector<Picked> of_batch_;
+    std::vector<std::uint32_t> picked_a_, picked_b_;
+    std::vector<std::uint8_t> picked_fixed_;
+    std::vector<Line> picked_lines_;
+
     Couplings<D> couplings_;
     std::unique_ptr<JointGroups<D>> groups_;
     std::unique_ptr<DirectSolver<D>> direct_;

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "dynamics/flight.hpp"
 #include "solver/solver.hpp"
 
@@ -99,7 +102,7 @@ namespace {
 void keep_momentum(const BodyState<3>& before, const BodyMass<3>& mass, double step, BodyState<3>& after) {
     constexpr double least_turn = 0.02;  // rad in the step
     const Locks& locks = mass.locks;
-    if (mass.isotropic || locks.rx || locks.ry || locks.rz) return;
+    if (locks.rx || locks.ry || locks.rz) return;
     if (dot(before.angular_velocity, before.angular_velocity) * step * step < least_turn * least_turn) return;
     const Vec3 coasting = coasting_spin<3>(before, mass, step) - before.angular_velocity;
     const Vec3 in_body = unrotate(before.rotation, after.angular_velocity - coasting);
@@ -107,8 +110,6 @@ void keep_momentum(const BodyState<3>& before, const BodyMass<3>& mass, double s
     after.angular_velocity =
         rotate(after.rotation, mass.inverse_inertia * unrotate(after.rotation, momentum));
 }
-void keep_momentum(const BodyState<2>&, const BodyMass<2>&, double, BodyState<2>&) {}
-
 }  // namespace
 
 template <int D>
@@ -123,6 +124,39 @@ void Solver<D>::prepare_contacts(const Crew& crew) {
     }
 }
 
+namespace {
+
+/// Energy of a spin, but for a factor of two.
+double spin_energy(const BodyMass<3>& mass, const Rotation3& rotation, const Vec3& spin) {
+    const Vec3 local = unrotate(rotation, spin);
+    return dot(local, mass.inertia * local);
+}
+
+/// The solver has a body's inertia as it lay at the start of the step. Where the body is then turned far, by
+/// other bodies and not as its spin would by itself, a spin about its thin axis becomes one about a thick
+/// one, with many times the energy. So what is much more than it had before and after the impulses is taken
+/// off.
+void keep_energy(const BodyState<3>& before, const BodyMass<3>& mass, const Vec3& turned, const Vec3& solved,
+                 BodyState<3>& after) {
+    constexpr double far = 0.5, much = 1.05;  // rad
+    if (!(dot(turned, turned) > far * far)) return;
+    const double most = std::max(spin_energy(mass, before.rotation, before.angular_velocity),
+                                 spin_energy(mass, before.rotation, solved));
+    const double now = spin_energy(mass, after.rotation, after.angular_velocity);
+    if (now > much * most) after.angular_velocity *= std::sqrt(most / now);
+}
+
+/// What the solver left of a spin becomes that of the body at its new place.
+void settle_spin(const BodyState<3>& before, const BodyMass<3>& mass, double step, const Vec3& turned,
+                 BodyState<3>& after) {
+    const Vec3 solved = after.angular_velocity;
+    keep_momentum(before, mass, step, after);
+    keep_energy(before, mass, turned, solved, after);
+}
+void settle_spin(const BodyState<2>&, const BodyMass<2>&, double, double, BodyState<2>&) {}
+
+}  // namespace
+
 template <int D>
 void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) const {
     const Part part = crew.part(slots_.size() - view_.first_movable, 64);
@@ -131,15 +165,22 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
         if (!is_loaded(slot)) continue;
         const std::uint32_t index = slots_.body(slot);
         BodyState<D>& state = input.states[index];
-        const BodyState<D> before = state;
+        const BodyMass<D>& mass = input.masses[index];
         const Motion<D, float> m = gather<float>(view_, &slot).motion;
         const Drive<D, float> drive = drives_.get(slot);
-        state.position += narrow<double>(m.moved);
-        turn<D>(state, narrow<double>(m.turned));
-        state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
-        state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
-        if (input.masses[index].inverse_mass != 0)
-            keep_momentum(before, input.masses[index], input.step, state);
+        const auto move = [&] {
+            state.position += narrow<double>(m.moved);
+            turn<D>(state, narrow<double>(m.turned));
+            state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
+            state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
+        };
+        if (mass.isotropic || mass.inverse_mass == 0) {
+            move();
+            continue;
+        }
+        const BodyState<D> before = state;
+        move();
+        settle_spin(before, mass, input.step, narrow<double>(m.turned), state);
     }
 }
 

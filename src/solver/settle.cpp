@@ -120,8 +120,10 @@ void Solver<D>::settle_struck(const Crew& crew) {
         return Part{blocks.begin * s.settling.width(), blocks.end * s.settling.width()};
     };
     each_settling(crew, false, [&](Section& s, const Part& blocks) { copy_struck(s, places(s, blocks)); });
+    if (crew.is_first() && some_joints_struck_) joints_.begin_settling();
     crew.meet();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
+        if (some_joints_struck_) crew.alone([&] { joints_.settle(view_, biased); });
         each_settling(crew, true, [&](Section& s, const Part& blocks) {
             const Passes<D>& passes = s.settling.passes();
             const BlockSpan<D> span = s.settling.span(blocks.begin, blocks.size());
@@ -129,6 +131,7 @@ void Solver<D>::settle_struck(const Crew& crew) {
         });
     }
     each_settling(crew, false, [&](Section& s, const Part& blocks) { return_struck(s, places(s, blocks)); });
+    if (crew.is_first() && some_joints_struck_) joints_.end_settling();
     crew.meet();
 }
 
@@ -139,6 +142,23 @@ void Solver<D>::settle(const Crew& crew) {
     crew.alone([&] {
         if (some_struck_) settle_struck<biased>(Crew());
     });
+}
+
+/// The joints near bodies that were struck. Are there any?
+template <int D>
+bool Solver<D>::pick_struck_joints() {
+    struck_jointed_.clear();
+    each_used([&](Section& s) {
+        for (const std::uint32_t place : s.struck) {
+            for (const std::uint32_t slot : {s.contacts.a(place), s.contacts.b(place)}) {
+                if (slot >= view_.first_movable && jointed_[slot]) struck_jointed_.push_back(slot);
+            }
+        }
+    });
+    std::ranges::sort(struck_jointed_);
+    const auto doubles = std::ranges::unique(struck_jointed_);
+    struck_jointed_.erase(doubles.begin(), doubles.end());
+    return !struck_jointed_.empty() && joints_.pick_near(struck_jointed_);
 }
 
 template <int D>
@@ -225,6 +245,7 @@ void Solver<D>::sum_struck() {
 
 #define CAROM_INSTANTIATE(D)                                       \
     template void Solver<D>::find_struck();                        \
+    template bool Solver<D>::pick_struck_joints();                 \
     template void Solver<D>::note_blows();                         \
     template void Solver<D>::forget_last_blows();                  \
     template void Solver<D>::settle<true>(const Crew&);            \

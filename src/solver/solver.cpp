@@ -148,7 +148,10 @@ void Solver<D>::step_through(const SolverInput<D>& input, const Crew& crew) {
         each_share(crew, false,
                    [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.find_pushing(span); });
         crew.meet();
-        crew.alone([&] { find_struck(); });
+        crew.alone([&] {
+            find_struck();
+            some_joints_struck_ = some_struck_ && pick_struck_joints();
+        });
         settle<true>(crew);
         each_body_share(crew, [&](const BodySpan<D>& bodies) { passes_->integrate_positions(bodies, h_); });
         if (some_impacts_) crew.alone([&] { impact_solver_.shift(impact_view(input)); });

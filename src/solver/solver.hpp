@@ -250,6 +250,7 @@ class Solver {
     void settle_struck(const Crew& crew);
     template <class Visit>
     void each_settling(const Crew& crew, bool writes_bodies, Visit&& visit);
+    bool pick_struck_joints();
     void mark_struck_bodies();
     void find_struck_blocks(const Crew& crew);
     /// Bodies are told apart by groups of slots, so that most blocks need one look.
@@ -291,7 +292,9 @@ class Solver {
     bool many_struck_ = false;   ///< so many that they are worth all workers
     bool groups_known_ = false;  ///< in this step
     std::uint64_t struck_groups_ = 0;
-    std::vector<Impact> impacts_;  ///< points with restitution
+    bool some_joints_struck_ = false;            ///< in this sub-step
+    std::vector<std::uint32_t> struck_jointed_;  ///< slots of struck bodies that have joints
+    std::vector<Impact> impacts_;                ///< points with restitution
     ImpactSolver<D> impact_solver_;
     std::vector<ContactStore<D>*> stores_;  ///< of all sections
     bool some_impacts_ = false;             ///< may anything bounce in this step, and are impacts together?

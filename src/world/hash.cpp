@@ -147,13 +147,14 @@ struct Folder {
     }
     void operator()(const SpringSettings& s) { all(s.frequency, s.damping_ratio, s.rest, s.most); }
     void operator()(const DriveSettings& d) {
-        all(d.measure, d.low, d.high, d.spring, d.motor_speed, d.motor_most, d.zero, d.coordinate);
+        all(d.measure, d.low, d.high, d.spring, d.motor_speed, d.motor_most, d.zero, d.coordinate, d.pawl,
+            d.pitch);
     }
     template <int D>
     void operator()(const JointRecord<D>& j) {
         all(j.body_a, j.body_b, j.layout, j.anchor_a, j.anchor_b, j.frame_a, j.frame_b, j.drives,
             j.held.linear, j.held.angular, j.held.friction, j.wrench.force, j.wrench.on_a, j.wrench.on_b,
-            j.before.force, j.before.on_a, j.before.on_b, j.kept);
+            j.before.force, j.before.on_a, j.before.on_b, j.kept, j.path.place, j.path.rounds, j.path.normal);
     }
     void operator()(const SensorPair& p) { all(p.sensor, p.visitor, p.inside, p.placed_anew); }
     template <int D>

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/curve.hpp"
 #include "joints/couplings.hpp"
+#include "joints/path.hpp"
 #include "joints/types.hpp"
 #include "math/check.hpp"
 #include "world/state.hpp"
@@ -20,7 +22,20 @@ std::uint32_t WorldState<D>::index(JointId<D> joint) const {
     return joint.index;
 }
 
-/// The joints of bodies that move freely. These bodies are the solver's and do not fly.
+/// To where the joint is in the middle of the step, so that its rows lie along the chord of the way.
+template <int D>
+void WorldState<D>::follow(JointRecord<D>& joint, double dt) const {
+    const Vec<D> anchor = apply(frame_of(joint.body_b), joint.anchor_b);
+    const auto velocity = [&](std::uint32_t body) {
+        const BodyState<D>& s = states[body];
+        return s.velocity + cross(s.angular_velocity, anchor - s.position);
+    };
+    const Vec<D> ahead = (0.5 * dt) * velocity(joint.body_b);
+    if (joint.body_a == no_body) return follow_path(joint, anchor + ahead);
+    const Vec<D> behind = (0.5 * dt) * velocity(joint.body_a);
+    follow_path(joint, apply_inverse(frame_of(joint.body_a), anchor + (ahead - behind)));
+}
+
 /// Something is about to change of which joints there are, of what is fixed about one, or of its bodies'
 /// masses.
 template <int D>
@@ -29,10 +44,12 @@ void WorldState<D>::expect_other_joints() {
     solver.let_joints_go(joints);
 }
 
+/// The joints of bodies that move freely. These bodies are the solver's and do not fly.
 template <int D>
 void WorldState<D>::list_active_joints() {
     if (joints_are_listed) return;
     joints_are_listed = true;
+    path_joints.clear();
     active_joints.clear();
     active_couplings.clear();
     breakable_joints.clear();
@@ -41,8 +58,10 @@ void WorldState<D>::list_active_joints() {
         return is_free(joint.body_a) || is_free(joint.body_b);
     };
     for (const JointId<D>& id : joint_ids) {
-        const JointRecord<D>& joint = joints[id.index];
-        if (joint.layout != no_layout && is_active(joint)) active_joints.push_back(id.index);
+        JointRecord<D>& joint = joints[id.index];
+        if (joint.layout == no_layout || !is_active(joint)) continue;
+        active_joints.push_back(id.index);
+        if (joint.path.curve) path_joints.push_back(id.index);
     }
     for (std::uint32_t i = 0; i < couplings.size(); ++i) {
         if (is_active(couplings[i].ends[0]) || is_active(couplings[i].ends[1])) active_couplings.push_back(i);
@@ -54,6 +73,11 @@ void WorldState<D>::list_active_joints() {
     };
     for (const std::uint32_t i : active_joints) list_breakable(i);
     for (const std::uint32_t i : active_couplings) list_breakable(couplings[i].joint);
+}
+
+template <int D>
+void WorldState<D>::follow_paths(double dt) {
+    for (const std::uint32_t i : path_joints) follow(joints[i], dt);
 }
 
 /// Who hangs on something that moves does not sleep.
@@ -405,10 +429,24 @@ std::span<const JointBreak<D>> World<D>::joint_breaks() const {
     return state_->events.joint_breaks;
 }
 
+namespace {
+
+/// The anchor of b, and the point of the path that is nearest to it.
+template <int D>
+std::array<Vec<D>, 2> anchors_on_path(const WorldState<D>& w, const JointRecord<D>& joint) {
+    const Transform<D> a = joint.body_a == no_body ? Transform<D>{} : w.frame_of(joint.body_a);
+    const Vec<D> b = apply(w.frame_of(joint.body_b), joint.anchor_b);
+    const Curve<D>& curve = *joint.path.curve;
+    return {apply(a, curve.at(curve.nearest(apply_inverse(a, b), joint.path.place)).point), b};
+}
+
+}  // namespace
+
 template <int D>
 std::array<Vec<D>, 2> World<D>::anchors(JointId<D> joint) const {
     const std::uint32_t i = state_->index(joint);
     const JointRecord<D>& j = state_->joints[i];
+    if (j.path.curve) return anchors_on_path(*state_, j);
     const Vec<D> a = j.body_a == no_body ? j.anchor_a : apply(state_->frame_of(j.body_a), j.anchor_a);
     return {a, apply(state_->frame_of(j.body_b), j.anchor_b)};
 }
@@ -473,6 +511,7 @@ template class World<3>;
 #define CAROM_INSTANTIATE(D)                                    \
     template void detail::WorldState<D>::expect_other_joints(); \
     template void detail::WorldState<D>::list_active_joints();  \
+    template void detail::WorldState<D>::follow_paths(double);  \
     template void detail::WorldState<D>::wake_jointed();        \
     template void detail::WorldState<D>::break_joints(double);  \
     template void detail::WorldState<D>::remove_joints_of(std::uint32_t);

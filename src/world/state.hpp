@@ -120,7 +120,8 @@ struct WorldState {
     std::vector<std::uint32_t> active_joints;     ///< indices of the joints that the solver sees
     std::vector<std::uint32_t> active_couplings;  ///< the same in `couplings`
     std::vector<std::uint32_t> breakable_joints;  ///< those of both that may break, by index
-    bool joints_are_listed = false;               ///< in these three, as they are now
+    std::vector<std::uint32_t> path_joints;       ///< those whose place changes with the bodies, by index
+    bool joints_are_listed = false;               ///< in these four, as they are now
     std::vector<PairKey> new_pairs;
     std::vector<Load<D>> loads;
     std::vector<std::uint8_t> varies;
@@ -262,6 +263,8 @@ struct WorldState {
     // joints.cpp: what binds bodies.
     void expect_other_joints();
     void list_active_joints();
+    void follow_paths(double dt);
+    void follow(JointRecord<D>& joint, double dt) const;
     void wake_jointed();
     void break_joints(double dt);
     void remove_joint(std::uint32_t joint);

@@ -194,6 +194,7 @@ void WorldState<D>::sum_forces(double dt) {
 template <int D>
 void WorldState<D>::solve_constraints(double dt) {
     list_active_joints();
+    follow_paths(dt);
     solver.run({states, masses, loads, scheduler.get(), some_locked, dt, definition.substeps,
                 definition.restitution_threshold, definition.impacts == Impacts::simultaneous,
                 definition.joints, joints, active_joints, couplings, active_couplings});
