@@ -96,7 +96,7 @@ class JointChecker {
     std::string label(int body) const {
         if (body == outside) return "the world";
         const auto index = static_cast<std::size_t>(body);
-        return "\"" + body_label(data_.bodies[index].name, index) + "\"";
+        return fmt::format("\"{}\"", body_label(data_.bodies[index].name, index));
     }
     double mass(int body) const {
         return built_.world.mass_properties(built_.bodies[static_cast<std::size_t>(body)]).mass;

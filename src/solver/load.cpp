@@ -110,6 +110,7 @@ void keep_momentum(const BodyState<3>& before, const BodyMass<3>& mass, double s
     after.angular_velocity =
         rotate(after.rotation, mass.inverse_inertia * unrotate(after.rotation, momentum));
 }
+
 }  // namespace
 
 template <int D>

@@ -3,8 +3,8 @@
 #include "dynamics/contact.hpp"
 #include "dynamics/contact_cache.hpp"
 #include "solver/apart.hpp"
+#include "solver/lane_manifold.hpp"
 #include "solver/marks.hpp"
-#include "solver/outlines_in_lanes.hpp"
 
 /// Manifolds that are no longer good, made anew where they lie: in the lanes of the contacts. What
 /// WorldState::update_contact does one by one for any two shapes is done here for those of `LaneShapes`.

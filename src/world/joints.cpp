@@ -58,7 +58,7 @@ void WorldState<D>::list_active_joints() {
         return is_free(joint.body_a) || is_free(joint.body_b);
     };
     for (const JointId<D>& id : joint_ids) {
-        JointRecord<D>& joint = joints[id.index];
+        const JointRecord<D>& joint = joints[id.index];
         if (joint.layout == no_layout || !is_active(joint)) continue;
         active_joints.push_back(id.index);
         if (joint.path.curve) path_joints.push_back(id.index);

@@ -75,7 +75,9 @@ TYPED_TEST(FacetTrees, miss_nothing_wherever_they_are) {
                 bool meets = true;
                 for (int k = 0; k < D; ++k)
                     meets &= item.box.lower[k] <= box.upper[k] && box.lower[k] <= item.box.upper[k];
-                if (meets) ASSERT_TRUE(std::ranges::count(found, item.facet) == 1) << distance << ", " << i;
+                if (meets) {
+                    ASSERT_TRUE(std::ranges::count(found, item.facet) == 1) << distance << ", " << i;
+                }
             }
         }
     }

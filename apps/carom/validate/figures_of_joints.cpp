@@ -41,11 +41,12 @@ BodyId2 add_bob(World2& world, const Vec2& position, std::optional<BodyId2> pivo
     return id;
 }
 
-World2 restless(int substeps) {
-    WorldDefinition2 definition;
+template <int D>
+World<D> restless(int substeps) {
+    WorldDefinition<D> definition;
     definition.substeps = substeps;
     definition.sleep = false;
-    return World2(definition);
+    return World<D>(definition);
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ std::vector<Figure> pendulum_figures() {
     }
     Series errors{""};
     for (const int substeps : {4, 8, 16, 32}) {
-        World2 world = restless(substeps);
+        World2 world = restless<2>(substeps);
         const BodyId2 bob = add_bob(world, {1, 0}, {});
         const auto now = [&] { return std::atan2(world.position(bob).x, -world.position(bob).y); };
         Series series{"Carom, 4 sub-steps", Series::Style::dots};
@@ -100,7 +101,7 @@ std::vector<Figure> double_pendulum_figures() {
         truth = rk4(truth, 1.0 / 5000, rate);
     }
     for (const int substeps : {4, 16}) {
-        World2 world = restless(substeps);
+        World2 world = restless<2>(substeps);
         const BodyId2 upper = add_bob(world, {1, 0}, {}), lower = add_bob(world, {2, 0}, upper);
         Series& series = figure.series.emplace_back(Series{fmt::format("Carom, {} sub-steps", substeps)});
         for (int i = 0; i <= 300; ++i) {
@@ -148,9 +149,7 @@ std::vector<Figure> buoyancy_figures() {
     Figure figure{"A cube of relative density 0.5 bobs", "t (s)", "height above rest (m)"};
     figure.series.push_back(reference("cos √(g/draft) t", 0, 6,
                                       [&](double t) { return start * std::cos(std::sqrt(g / draft) * t); }));
-    WorldDefinition3 definition;
-    definition.sleep = false;
-    World3 world(definition);
+    World3 world = restless<3>(4);
     world.add_force({Buoyancy<3>{}});
     BodyDefinition3 cube;
     cube.shapes.push_back({Box<3>{{1, 1, 1}}});
