@@ -42,6 +42,13 @@ BodyId2 add_bob(World2& world, const Vec2& position, std::optional<BodyId2> pivo
 }
 
 template <int D>
+World<D> weightless() {
+    WorldDefinition<D> definition;
+    definition.gravity = {};
+    return World<D>(definition);
+}
+
+template <int D>
 World<D> restless(int substeps) {
     WorldDefinition<D> definition;
     definition.substeps = substeps;
@@ -122,9 +129,7 @@ std::vector<Figure> machine_figures() {
             return std::exp(-ratio * omega * t) *
                    (std::cos(damped * t) + ratio * omega / damped * std::sin(damped * t));
         }));
-        WorldDefinition2 definition;
-        definition.gravity = {};
-        World2 world(definition);
+        World2 world = weightless<2>();
         BodyDefinition2 body;
         body.mass = 1;
         body.position = {1, 0};
