@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <type_traits>
 
 #include "../collision/random.hpp"
@@ -75,7 +76,9 @@ TYPED_TEST(FacetTrees, miss_nothing_wherever_they_are) {
                 bool meets = true;
                 for (int k = 0; k < D; ++k)
                     meets &= item.box.lower[k] <= box.upper[k] && box.lower[k] <= item.box.upper[k];
-                if (meets) ASSERT_TRUE(std::ranges::count(found, item.facet) == 1) << distance << ", " << i;
+                // Once, and a few that are near besides.
+                const auto times = std::ranges::count(found, item.facet);
+                ASSERT_TRUE(times == 1 || (times == 0 && !meets)) << distance << ", " << i;
             }
         }
     }
