@@ -51,7 +51,7 @@ TEST(Profile, TellsWhatAStepTook) {
         }
         EXPECT_NEAR(at, profile.begin + profile.seconds, 1e-9);
     }
-    EXPECT_EQ(world.profile().stages.size(), 20u);
+    EXPECT_EQ(world.profile().stages.size(), 21u);
     EXPECT_EQ(world.profile().awake, 1u);
     EXPECT_EQ(world.profile().pairs, 1u);
     EXPECT_EQ(world.profile().solved, 1u);
@@ -86,7 +86,7 @@ TEST(ChromeTrace, IsJsonWithABarAStage) {
     }
     EXPECT_EQ(steps, 3);
     EXPECT_EQ(counters, 3);
-    EXPECT_EQ(stages, 60);
+    EXPECT_EQ(stages, 63);
     std::filesystem::remove(path);
 }
 
