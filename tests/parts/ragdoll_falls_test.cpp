@@ -137,7 +137,9 @@ TYPED_TEST_SUITE(FallingFigures, BothDimensions);
 
 TYPED_TEST(FallingFigures, GainNoEnergyAndHoldTogether) {
     constexpr int D = TypeParam::value;
-    for (int i = 0; i < trials(3); ++i) {
+    // A fall takes as long as many a case of other tests.
+    const int falls = std::max(1, trials(60) / 20);
+    for (int i = 0; i < falls; ++i) {
         for (const bool into_pit : {true, false}) {
             const Course course = fall<D>(static_cast<std::uint64_t>(i), into_pit);
             EXPECT_FALSE(course.lost) << i;
