@@ -137,7 +137,7 @@ struct LaneProximity {
 /// `flip`.
 template <class F>
 CAROM_INLINE void try_edges(const LaneOutline<F>& outline, const LaneOutline<F>& other, bool flip,
-                            LaneProximity<F>& best, F& square, LaneEdge<F>& edge) {
+                            LaneProximity<F>& best, F& square, Vec<2, F>& normal) {
     for (int i = 0; i < outline.n; ++i) {
         const Vec<2, F> from = outline.corners[i], to = outline.next(i), along = to - from;
         const F whole = dot(along, along), inverse_whole = F(1) / maximum(whole, F(1e-30f));
@@ -162,7 +162,7 @@ CAROM_INLINE void try_edges(const LaneOutline<F>& outline, const LaneOutline<F>&
             best.between_corners = select(better, F(1) - inside, best.between_corners);
             best.is_of_a = select(better, flip ? F(0) : inside, best.is_of_a);
             best.is_of_b = select(better, flip ? inside : F(0), best.is_of_b);
-            edge.normal = selected(better, outline.normals[i], edge.normal);
+            normal = selected(better, outline.normals[i], normal);
         }
     }
 }
@@ -173,10 +173,10 @@ template <class F>
 CAROM_INLINE LaneProximity<F> closest(const LaneOutline<F>& a, const LaneOutline<F>& b,
                                       const LaneProximity<F>& facing, F separation, F& square) {
     LaneProximity<F> best;
-    LaneEdge<F> edge;
+    Vec<2, F> edge_normal{};
     square = F(1e30f);
-    try_edges(a, b, false, best, square, edge);
-    try_edges(b, a, true, best, square, edge);
+    try_edges(a, b, false, best, square, edge_normal);
+    try_edges(b, a, true, best, square, edge_normal);
     const Vec<2, F> across = best.on_b - best.on_a;
     const F distance = square_root(square);
     constexpr float float_rounding = 4e-7f;
@@ -184,7 +184,7 @@ CAROM_INLINE LaneProximity<F> closest(const LaneOutline<F>& a, const LaneOutline
                                             fabs(best.on_b.y) + a.body_radius);
     const auto inside = F(0.5f) > best.between_corners;
     // Along the normal of an edge; only a segment has two sides.
-    const Vec<2, F> normal = selected(best.is_of_b > F(0.5f), -edge.normal, edge.normal);
+    const Vec<2, F> normal = selected(best.is_of_b > F(0.5f), -edge_normal, edge_normal);
     const F along_normal = dot(normal, across);
     const auto behind = F(0) > along_normal;
     const Vec<2, F> outwards = selected(behind, -normal, normal);
