@@ -83,11 +83,11 @@ Kind<D> random_kind(Random& random, const Vec<D>& anchor, bool driven) {
     }
 }
 
-/// Trees of bodies with random joints between neighbours, and sometimes a loop. Masses differ by up to ten
-/// times between neighbours.
+/// Trees of bodies with random joints between neighbours, and sometimes a loop. Masses differ by up to so
+/// many powers of ten.
 template <int D>
-World<D> soup(std::uint64_t seed, bool driven, bool with_ground,
-              JointMethod method = JointMethod::automatic) {
+World<D> soup(std::uint64_t seed, bool driven, bool with_ground, JointMethod method = JointMethod::automatic,
+              int decades = 1) {
     Random random(seed);
     WorldDefinition<D> definition = with_ground ? WorldDefinition<D>{} : no_gravity<D>();
     definition.joints = method;
@@ -103,7 +103,7 @@ World<D> soup(std::uint64_t seed, bool driven, bool with_ground,
         body.rotation = random.rotation<D>();
         if (!with_ground) body.velocity = random.in_cube<D>(1);
         if (!with_ground) body.shapes[0].filter.mask = 0;  // what overlaps would be pushed apart
-        body.mass = random.below(2) == 0 ? 1 : 10;
+        body.mass = std::pow(10, random.below(decades + 1));
         bodies.push_back(world.add_body(body));
         JointDefinition<D> joint;
         if (parent) joint.a = parent;

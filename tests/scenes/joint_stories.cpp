@@ -89,6 +89,24 @@ TEST(JointStories, the_cars_drive) {
     EXPECT_GT(rotate(car.world().rotation(chassis), Vec3{0, 1, 0}).y, 0.9);
 }
 
+TEST(JointStories, the_motorcycle_rides_over_the_hills) {
+    Played<2> hills("2d/motorcycle");
+    hills.run(600);
+    EXPECT_GT(hills.world().position(hills.body("frame")).x, 15);
+    EXPECT_LT(std::fabs(hills.world().rotation(hills.body("frame")).angle()), 1);
+    EXPECT_LT(hills.worst_error(), 1e-2);
+}
+
+TEST(JointStories, the_tracked_vehicle_crosses_a_sill_and_turns) {
+    Played<3> tracks("3d/tracked_vehicle");
+    tracks.run(300);
+    const BodyId3 hull = tracks.body("hull");
+    EXPECT_GT(tracks.world().position(hull).x, 10);
+    EXPECT_LT(tracks.world().position(hull).z, -1);  // the right track is the faster one
+    EXPECT_GT(rotate(tracks.world().rotation(hull), Vec3{0, 1, 0}).y, 0.9);
+    EXPECT_LT(tracks.worst_error(), 1e-2);
+}
+
 TEST(JointStories, the_crane_swings_its_ball) {
     Played<2> crane("2d/crane");
     crane.run(600);
