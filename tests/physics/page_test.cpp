@@ -17,8 +17,10 @@ struct Page {
 };
 
 Page page_of(const std::string& cases) {
+    // Tests run side by side, and each writes a page of its own.
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / "carom_validation_page.html";
+        std::filesystem::path(testing::TempDir()) / ("carom_validation_page_" + name + ".html");
     std::filesystem::remove(path);
     const std::string command = std::string("'") + CAROM_PROGRAM + "' validate " + cases + " --html '" +
                                 path.string() + "' > /dev/null";
