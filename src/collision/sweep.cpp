@@ -114,8 +114,7 @@ std::uint32_t Sweep<D>::strip_of(float at) const {
 }
 
 template <int D>
-void Sweep<D>::arrange(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
-                       std::span<const OuterBox<D>> before) {
+void Sweep<D>::arrange(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes) {
     choose_axes(listed, boxes);
     order_.clear();
     wide_.clear();
@@ -137,7 +136,6 @@ void Sweep<D>::arrange(std::span<const std::uint32_t> listed, std::span<const Ou
     for (std::uint32_t strip = 0; strip < strips_; ++strip)
         starts_[strip + 1] += starts_[strip] + SweepKernel<D>::most_lanes;
     sort();
-    fill_columns(boxes, before);
 }
 
 /// By `key`, digit by digit.
@@ -161,22 +159,24 @@ void Sweep<D>::sort() {
 }
 
 template <int D>
-void Sweep<D>::fill_columns(std::span<const OuterBox<D>> boxes, std::span<const OuterBox<D>> before) {
-    const std::size_t places = starts_.back(), lanes = places + SweepKernel<D>::most_lanes;
-    places_.resize(places);
-    for (int k = 0; k < D; ++k) {
-        // What lies between the strips begins beyond any end.
-        lower_[k].assign(lanes, std::numeric_limits<float>::infinity());
-        upper_[k].resize(lanes);
-        lower_before_[k].resize(lanes);
-        upper_before_[k].resize(lanes);
-    }
+void Sweep<D>::fill_columns(std::span<const OuterBox<D>> boxes, std::span<const OuterBox<D>> before,
+                            Scheduler* scheduler) {
+    places_.assign(starts_.back() + SweepKernel<D>::most_lanes, {});
     next_.assign(starts_.begin(), starts_.end());
     for (const Ordered& item : order_) {
-        const OuterBox<D>&box = boxes[item.box], &old = before[item.box];
-        for (std::uint32_t strip = item.first_strip; strip <= item.last_strip; ++strip) {
-            const std::uint32_t place = next_[strip]++;
-            places_[place] = {item.box, strip, item.first_strip};
+        for (std::uint32_t strip = item.first_strip; strip <= item.last_strip; ++strip)
+            places_[next_[strip]++] = {item.box, strip, item.first_strip};
+    }
+    for (auto* columns : {lower_, upper_, lower_before_, upper_before_}) {
+        for (int k = 0; k < D; ++k) columns[k].resize(places_.size());
+    }
+    constexpr std::size_t worth_a_worker = 1024;
+    run_range(scheduler, places_.size(), worth_a_worker, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+            // What lies between the strips begins beyond any end.
+            const std::uint32_t i = places_[place].box;
+            const OuterBox<D> box = i == nobody ? no_box<D>() : boxes[i];
+            const OuterBox<D> old = i == nobody ? no_box<D>() : before[i];
             for (int k = 0; k < D; ++k) {
                 lower_[k][place] = box.lower[axes_[k]];
                 upper_[k][place] = box.upper[axes_[k]];
@@ -184,7 +184,7 @@ void Sweep<D>::fill_columns(std::span<const OuterBox<D>> boxes, std::span<const 
                 upper_before_[k][place] = old.upper[axes_[k]];
             }
         }
-    }
+    });
 }
 
 template <int D>
@@ -221,7 +221,8 @@ template <int D>
 void Sweep<D>::look(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
                     std::span<const OuterBox<D>> before, Scheduler* scheduler) {
     constexpr std::size_t stretch = 512;
-    arrange(listed, boxes, before);
+    arrange(listed, boxes);
+    fill_columns(boxes, before, scheduler);
     pairs_.look_through(scheduler, starts_.back(), stretch,
                         [&](std::size_t begin, std::size_t end, std::vector<Pair>& pairs) {
                             look_along(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),

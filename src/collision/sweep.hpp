@@ -40,18 +40,20 @@ class Sweep {
         std::uint32_t key, box;
         std::uint32_t first_strip, last_strip;
     };
+    static constexpr std::uint32_t nobody = ~std::uint32_t{0};
     struct Place {
-        std::uint32_t box, strip, first_strip;  ///< the strip of this place, and the first that the box is in
+        std::uint32_t box = nobody;
+        std::uint32_t strip = 0, first_strip = 0;  ///< that of this place, and the first that the box is in
     };
 
     void look(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
               std::span<const OuterBox<D>> before, Scheduler* scheduler);
     void look_along(std::uint32_t begin, std::uint32_t end, std::vector<Pair>& pairs) const;
-    void arrange(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
-                 std::span<const OuterBox<D>> before);
+    void arrange(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes);
     void choose_axes(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes);
     void sort();
-    void fill_columns(std::span<const OuterBox<D>> boxes, std::span<const OuterBox<D>> before);
+    void fill_columns(std::span<const OuterBox<D>> boxes, std::span<const OuterBox<D>> before,
+                      Scheduler* scheduler);
     std::uint32_t strip_of(float at) const;
     SweepColumns<D> columns() const;
 
