@@ -14,7 +14,7 @@ namespace {
 
 template <int D>
 struct Crowd {
-    std::vector<detail::OuterBox<D>> boxes;
+    std::vector<detail::OuterBox<D>> boxes, before;
     std::vector<std::uint32_t> listed;
     std::vector<std::uint8_t> fresh;
 
@@ -28,6 +28,7 @@ struct Crowd {
             boxes.push_back(Aabb<D>{center - extent, center + extent});
             listed.push_back(i);
             fresh.push_back(i % 2);  // about as many as get new boxes in a step
+            before.push_back(i % 2 ? detail::no_box<D>() : boxes[i]);
         }
     }
     detail::Tree<D> tree() const {
@@ -45,7 +46,8 @@ void crowd_sweep(benchmark::State& state) {
     detail::Sweep<D> sweep;
     std::size_t pairs = 0;
     for (auto _ : state)
-        sweep.find(crowd.listed, crowd.boxes, crowd.fresh, [&](std::uint32_t, std::uint32_t) { ++pairs; });
+        sweep.find(crowd.listed, crowd.boxes, crowd.before, nullptr,
+                   [&](std::uint32_t, std::uint32_t) { ++pairs; });
     state.SetItemsProcessed(state.iterations() * state.range(0));
     state.counters["pairs"] = double(pairs) / double(state.iterations());
 }

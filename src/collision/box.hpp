@@ -40,6 +40,17 @@ struct OuterBox {
     friend bool operator==(const OuterBox&, const OuterBox&) = default;
 };
 
+/// A box that holds nothing and overlaps nothing.
+template <int D>
+OuterBox<D> no_box() {
+    OuterBox<D> box;
+    for (int i = 0; i < D; ++i) {
+        box.lower[i] = std::numeric_limits<float>::infinity();
+        box.upper[i] = -std::numeric_limits<float>::infinity();
+    }
+    return box;
+}
+
 /// The same box.
 template <int D>
 Aabb<D> widened(const OuterBox<D>& box) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "collision/sweep_in_lanes.hpp"
 #include "simd/width.hpp"
@@ -63,20 +64,30 @@ const SweepKernel<D>& sweep_kernel() {
     }
 }
 
-/// The axes by how far the boxes are spread along them, and strips about twice as wide as a box.
+/// The axes by how far the boxes are spread along them, and strips about twice as wide as a box. Some
+/// hundreds of boxes tell, taken from all over the list but not at equal intervals, as they may lie in rows.
 template <int D>
 void Sweep<D>::choose_axes(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes) {
+    constexpr std::size_t enough = 512;
+    const std::size_t asked = std::min(listed.size(), enough);
+    const auto chosen = [&](std::size_t i) {
+        if (asked == listed.size()) return listed[i];
+        constexpr std::uint64_t golden_section = 0x9e3779b9;  // of 2³²
+        const std::uint64_t share = (i * golden_section) & 0xffffffff;
+        return listed[static_cast<std::size_t>((share * listed.size()) >> 32)];
+    };
     Vec<D> sum{}, squares{}, size{};
     std::size_t count = 0;
     Aabb<D> range{};
-    for (const std::uint32_t i : listed) {
-        if (!is_bounded(boxes[i])) continue;
+    for (std::size_t i = 0; i < asked; ++i) {
+        const OuterBox<D>& box = boxes[chosen(i)];
+        if (!is_bounded(box)) continue;
         Vec<D> center;
         for (int k = 0; k < D; ++k) {
-            center[k] = static_cast<double>(middle(boxes[i], k));
+            center[k] = static_cast<double>(middle(box, k));
             sum[k] += center[k];
             squares[k] += center[k] * center[k];
-            size[k] += static_cast<double>(boxes[i].upper[k] - boxes[i].lower[k]);
+            size[k] += static_cast<double>(box.upper[k] - box.lower[k]);
         }
         range = count++ ? merged(range, Aabb<D>{center, center}) : Aabb<D>{center, center};
     }
@@ -89,7 +100,7 @@ void Sweep<D>::choose_axes(std::span<const std::uint32_t> listed, std::span<cons
     const int across = axes_[1];
     const double extent = range.upper[across] - range.lower[across];
     const double width = std::max(2 * per * size[across], 1e-6 * extent);
-    const double most = std::min(4096.0, 1 + static_cast<double>(count) / 32);
+    const double most = std::min(4096.0, 1 + static_cast<double>(listed.size()) / 32);
     const double strips = std::clamp(width > 0 ? extent / width : 1.0, 1.0, most);
     strips_ = static_cast<std::uint32_t>(strips);
     strip_begin_ = static_cast<float>(range.lower[across]);
@@ -125,44 +136,55 @@ void Sweep<D>::arrange(std::span<const std::uint32_t> listed, std::span<const Ou
     for (std::uint32_t strip = 0; strip < strips_; ++strip)
         starts_[strip + 1] += starts_[strip] + SweepKernel<D>::most_lanes;
     sort();
-    fill_columns(boxes);
 }
 
 /// By `key`, digit by digit.
 template <int D>
 void Sweep<D>::sort() {
-    constexpr std::uint32_t digits = 2048, bits = 11;
+    constexpr std::uint32_t digits = 2048, bits = 11, passes = 3;
+    std::array<std::array<std::uint32_t, digits>, passes> counts{};
+    const auto digit = [](std::uint32_t key, std::uint32_t pass) {
+        return (key >> (pass * bits)) & (digits - 1);
+    };
+    for (const Ordered& item : order_) {
+        for (std::uint32_t pass = 0; pass < passes; ++pass) ++counts[pass][digit(item.key, pass)];
+    }
     sorted_.resize(order_.size());
-    for (std::uint32_t shift = 0; shift < 32; shift += bits) {
-        std::array<std::uint32_t, digits + 1> begin{};
-        for (const Ordered& item : order_) ++begin[((item.key >> shift) & (digits - 1)) + 1];
-        for (std::uint32_t i = 0; i < digits; ++i) begin[i + 1] += begin[i];
-        for (const Ordered& item : order_) sorted_[begin[(item.key >> shift) & (digits - 1)]++] = item;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        std::uint32_t next = 0;
+        for (std::uint32_t& count : counts[pass]) next += std::exchange(count, next);
+        for (const Ordered& item : order_) sorted_[counts[pass][digit(item.key, pass)]++] = item;
         std::swap(order_, sorted_);
     }
 }
 
 template <int D>
-void Sweep<D>::fill_columns(std::span<const OuterBox<D>> boxes) {
-    const std::size_t places = starts_.back();
-    places_.resize(places);
-    found_.resize(places + SweepKernel<D>::most_lanes);
-    for (int k = 0; k < D; ++k) {
-        // What lies between the strips begins beyond any end.
-        lower_[k].assign(places + SweepKernel<D>::most_lanes, std::numeric_limits<float>::infinity());
-        upper_[k].resize(places + SweepKernel<D>::most_lanes);
-    }
+void Sweep<D>::fill_columns(std::span<const OuterBox<D>> boxes, std::span<const OuterBox<D>> before,
+                            Scheduler* scheduler) {
+    places_.assign(starts_.back() + SweepKernel<D>::most_lanes, {});
     next_.assign(starts_.begin(), starts_.end());
     for (const Ordered& item : order_) {
-        for (std::uint32_t strip = item.first_strip; strip <= item.last_strip; ++strip) {
-            const std::uint32_t place = next_[strip]++;
-            places_[place] = {item.box, item.first_strip};
+        for (std::uint32_t strip = item.first_strip; strip <= item.last_strip; ++strip)
+            places_[next_[strip]++] = {item.box, strip, item.first_strip};
+    }
+    for (auto* columns : {lower_, upper_, lower_before_, upper_before_}) {
+        for (int k = 0; k < D; ++k) columns[k].resize(places_.size());
+    }
+    constexpr std::size_t worth_a_worker = 1024;
+    run_range(scheduler, places_.size(), worth_a_worker, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+            // What lies between the strips begins beyond any end.
+            const std::uint32_t i = places_[place].box;
+            const OuterBox<D> box = i == nobody ? no_box<D>() : boxes[i];
+            const OuterBox<D> old = i == nobody ? no_box<D>() : before[i];
             for (int k = 0; k < D; ++k) {
-                lower_[k][place] = boxes[item.box].lower[axes_[k]];
-                upper_[k][place] = boxes[item.box].upper[axes_[k]];
+                lower_[k][place] = box.lower[axes_[k]];
+                upper_[k][place] = box.upper[axes_[k]];
+                lower_before_[k][place] = old.lower[axes_[k]];
+                upper_before_[k][place] = old.upper[axes_[k]];
             }
         }
-    }
+    });
 }
 
 template <int D>
@@ -171,8 +193,54 @@ SweepColumns<D> Sweep<D>::columns() const {
     for (int k = 0; k < D; ++k) {
         columns.lower[k] = lower_[k].data();
         columns.upper[k] = upper_[k].data();
+        columns.lower_before[k] = lower_before_[k].data();
+        columns.upper_before[k] = upper_before_[k].data();
     }
     return columns;
+}
+
+/// The pairs of the places from `begin` to `end` and later ones.
+template <int D>
+void Sweep<D>::look_along(std::uint32_t begin, std::uint32_t end, std::vector<Pair>& pairs) const {
+    const SweepKernel<D>& kernel = sweep_kernel<D>();
+    const SweepColumns<D> columns = this->columns();
+    constexpr std::uint32_t room = 256;
+    std::array<SweepPair, room> found;
+    for (SweepCursor cursor{begin, begin + 1}; cursor.row < end;) {
+        const std::uint32_t count = kernel.find(columns, cursor, end, found.data(), room);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Place &one = places_[found[i].row], &other = places_[found[i].other];
+            // Two that share several strips meet in the first of these.
+            const bool here = std::max(one.first_strip, other.first_strip) == one.strip;
+            if (here) pairs.push_back({one.box, other.box});
+        }
+    }
+}
+
+template <int D>
+void Sweep<D>::look(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
+                    std::span<const OuterBox<D>> before, Scheduler* scheduler) {
+    constexpr std::size_t stretch = 512;
+    arrange(listed, boxes);
+    fill_columns(boxes, before, scheduler);
+    pairs_.look_through(scheduler, starts_.back(), stretch,
+                        [&](std::size_t begin, std::size_t end, std::vector<Pair>& pairs) {
+                            look_along(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
+                                       pairs);
+                        });
+    // Those that are kept apart, with one another, and with all others.
+    const auto meet = [&](std::uint32_t a, std::uint32_t b, std::vector<Pair>& pairs) {
+        if (overlaps(boxes[a], boxes[b]) && !overlaps(before[a], before[b])) pairs.push_back({a, b});
+    };
+    const std::size_t wide = wide_.size(), others = wide > 0 ? wide + order_.size() : 0;
+    wide_pairs_.look_through(scheduler, others, stretch,
+                             [&](std::size_t begin, std::size_t end, std::vector<Pair>& pairs) {
+                                 for (std::size_t i = begin; i < end; ++i) {
+                                     const std::uint32_t box = i < wide ? wide_[i] : order_[i - wide].box;
+                                     for (std::size_t k = 0; k < std::min(i, wide); ++k)
+                                         meet(wide_[k], box, pairs);
+                                 }
+                             });
 }
 
 template const SweepKernel<2>& sweep_kernel();

@@ -1,52 +1,37 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "collision/box.hpp"
 #include "collision/sweep_columns.hpp"
+#include "core/gathered.hpp"
 
 namespace carom::detail {
 
-/// Finds all pairs of overlapping boxes among many at once: sorts them along the axis on which they lie
-/// furthest apart and sweeps over them, many at a time (Baraff 1992), within strips across the second such
-/// axis. For a crowd in which most boxes are new this is far cheaper than a question to a tree for each. An
-/// object of it keeps its buffers.
+/// Finds the pairs that begin to overlap among many boxes at once: sorts them along the axis on which they
+/// lie furthest apart and sweeps over them, many at a time (Baraff 1992), within strips across the second
+/// such axis. For a crowd in which most boxes are new this is far cheaper than a question to a tree for each.
+/// An object of it keeps its buffers.
 template <int D>
 class Sweep {
   public:
+    /// Two boxes by their numbers.
+    struct Pair {
+        std::uint32_t a, b;
+    };
+
     /// Calls `visit(a, b)` once for each two of the `listed` boxes, which are numbers into `boxes`, that
-    /// overlap and of which one is marked in `fresh`. The order depends on the boxes, on that of `listed`,
-    /// and on nothing else.
+    /// overlap and did not when they were as in `before`; one that is empty there (`no_box`) overlapped
+    /// nothing. The order depends on the boxes, on that of `listed`, and on nothing else.
     template <class Visitor>
     void find(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
-              std::span<const std::uint8_t> fresh, Visitor&& visit) {
-        arrange(listed, boxes);
-        const SweepKernel<D>& kernel = sweep_kernel<D>();
-        const SweepColumns<D> columns = this->columns();
-        for (std::uint32_t strip = 0; strip + 1 < starts_.size(); ++strip) {
-            const std::uint32_t end = starts_[strip + 1] - SweepKernel<D>::most_lanes;
-            for (std::uint32_t row = starts_[strip]; row < end; ++row) {
-                const std::uint32_t count = kernel.overlapping(columns, row, found_.data());
-                const Place& one = places_[row];
-                for (std::uint32_t k = 0; k < count; ++k) {
-                    const Place& other = places_[found_[k]];
-                    // Two that share several strips meet in the first of these.
-                    const bool here = std::max(one.first_strip, other.first_strip) == strip;
-                    if (here && (fresh[one.box] || fresh[other.box])) visit(one.box, other.box);
-                }
-            }
-        }
-        for (std::size_t i = 0; i < wide_.size(); ++i) {
-            const auto meet = [&](std::uint32_t other) {
-                const bool new_one = fresh[wide_[i]] || fresh[other];
-                if (new_one && overlaps(boxes[wide_[i]], boxes[other])) visit(wide_[i], other);
-            };
-            for (const Ordered& other : order_) meet(other.box);
-            for (std::size_t k = i + 1; k < wide_.size(); ++k) meet(wide_[k]);
-        }
+              std::span<const OuterBox<D>> before, Scheduler* scheduler, Visitor&& visit) {
+        look(listed, boxes, before, scheduler);
+        const auto visit_pair = [&](const Pair& pair) { visit(pair.a, pair.b); };
+        pairs_.each(visit_pair);
+        wide_pairs_.each(visit_pair);
     }
 
   private:
@@ -55,14 +40,20 @@ class Sweep {
         std::uint32_t key, box;
         std::uint32_t first_strip, last_strip;
     };
+    static constexpr std::uint32_t nobody = ~std::uint32_t{0};
     struct Place {
-        std::uint32_t box, first_strip;
+        std::uint32_t box = nobody;
+        std::uint32_t strip = 0, first_strip = 0;  ///< that of this place, and the first that the box is in
     };
 
+    void look(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes,
+              std::span<const OuterBox<D>> before, Scheduler* scheduler);
+    void look_along(std::uint32_t begin, std::uint32_t end, std::vector<Pair>& pairs) const;
     void arrange(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes);
     void choose_axes(std::span<const std::uint32_t> listed, std::span<const OuterBox<D>> boxes);
     void sort();
-    void fill_columns(std::span<const OuterBox<D>> boxes);
+    void fill_columns(std::span<const OuterBox<D>> boxes, std::span<const OuterBox<D>> before,
+                      Scheduler* scheduler);
     std::uint32_t strip_of(float at) const;
     SweepColumns<D> columns() const;
 
@@ -75,7 +66,8 @@ class Sweep {
     std::vector<std::uint32_t> starts_, next_;  ///< places, by strip
     std::vector<Place> places_;
     std::vector<float> lower_[D], upper_[D];  ///< by place
-    std::vector<std::uint32_t> found_;
+    std::vector<float> lower_before_[D], upper_before_[D];
+    Gathered<Pair> pairs_, wide_pairs_;
 };
 
 }  // namespace carom::detail

@@ -74,6 +74,13 @@ class Tree {
 
     const OuterBox<D>& box(std::int32_t leaf) const { return nodes_[leaf].box; }
     std::uint32_t payload(std::int32_t leaf) const { return std::uint32_t(nodes_[leaf].child[1]); }
+    /// Calls `visit(leaf)` for every leaf.
+    template <class Visitor>
+    void each_leaf(Visitor&& visit) const {
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (nodes_[i].leaf() && nodes_[i].height == 0) visit(static_cast<std::int32_t>(i));
+        }
+    }
     /// Number of leaves.
     std::int32_t size() const { return leaf_count_; }
     /// Length of the longest path from the root to a leaf; zero for one leaf or none.

@@ -37,6 +37,9 @@ class Adjacency {
         }
     }
 
+    /// One of the two nodes of a link.
+    std::uint32_t node(std::uint32_t link, int side) const { return links_[link].node[side]; }
+
     /// Calls `visit(link, other_node)` for each link of the node. Nothing may be added or removed meanwhile.
     template <class Visit>
     void each(std::uint32_t node, Visit&& visit) const {

@@ -15,9 +15,6 @@ namespace {
 /// boxes, so this is little.
 constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
 
-/// Mark beside the one in `has_new_box`, while new boxes are looked for: the shape has one since.
-constexpr std::uint8_t renewed_now = 2;
-
 /// What bounces may turn within a step, or be struck, and then strike what is near.
 template <int D>
 double least_margin(const ShapeRecord<D>& shape) {
@@ -74,9 +71,16 @@ void WorldState<D>::change_tree(std::uint32_t body, TreeKind kind) {
 
 template <int D>
 void WorldState<D>::mark_moved(std::uint32_t shape) {
-    if (has_new_box[shape]) return;
-    has_new_box[shape] = 1;
-    moved_shapes.push_back(shape);
+    if (!has_new_box[shape]) moved_shapes.push_back(shape);
+    has_new_box[shape] |= is_new;
+}
+
+/// All that is near the shape counts as if it had just come there: what it is, or with whom it may be a pair,
+/// changed.
+template <int D>
+void WorldState<D>::meet_anew(std::uint32_t shape) {
+    mark_moved(shape);
+    has_new_box[shape] |= meets_anew;
 }
 
 template <int D>
@@ -86,7 +90,7 @@ void WorldState<D>::insert_leaf(std::uint32_t shape) {
     s.leaf = Tree<D>::none;
     unplanted.push_back(shape);
     some_unplanted.store(true, std::memory_order_relaxed);
-    mark_moved(shape);
+    meet_anew(shape);
 }
 
 /// Shapes come into the trees together, before anybody looks there: a tree that is built over many at once is
@@ -111,12 +115,41 @@ void WorldState<D>::plant() {
     some_unplanted.store(false, std::memory_order_release);
 }
 
-/// Several threads may ask at once; the first of them plants.
+/// Brings the tree of what moves up to date with the boxes. A crowd finds its pairs without it, so this waits
+/// until somebody asks.
 template <int D>
-void WorldState<D>::plant_for_queries() {
-    if (!some_unplanted.load(std::memory_order_acquire)) return;
+void WorldState<D>::refresh_tree() {
+    if (!some_leaves_are_old.load(std::memory_order_relaxed)) return;
+    Tree<D>& tree = trees[of_moving];
+    const auto box_of = [&](std::uint32_t shape) -> const OuterBox<D>& { return fat_boxes[shape]; };
+    new_leaves.clear();
+    tree.each_leaf([&](std::int32_t leaf) {
+        if (!(tree.box(leaf) == box_of(tree.payload(leaf)))) new_leaves.push_back(leaf);
+    });
+    if (10 * new_leaves.size() > static_cast<std::size_t>(tree.size())) {
+        tree.move_all(new_leaves, box_of);
+        // In a crowd that tumbles neighbours do not stay neighbours.
+        constexpr double most_growth = 1.5;
+        const double cost = tree.cost();
+        if (cost > most_growth * cost_when_built) {
+            tree.rebuild();
+            cost_when_built = tree.cost();
+        }
+    } else {
+        for (const std::int32_t leaf : new_leaves) tree.move(leaf, box_of(tree.payload(leaf)));
+    }
+    some_leaves_are_old.store(false, std::memory_order_release);
+}
+
+/// Several threads may ask at once; the first of them does the work.
+template <int D>
+void WorldState<D>::prepare_trees_for_queries() {
+    if (!some_unplanted.load(std::memory_order_acquire) &&
+        !some_leaves_are_old.load(std::memory_order_acquire))
+        return;
     const std::lock_guard lock(planting);
     plant();
+    refresh_tree();
 }
 
 template <int D>
@@ -128,8 +161,8 @@ void WorldState<D>::remove_leaf(std::uint32_t shape) {
 template <int D>
 void WorldState<D>::set_box(std::uint32_t shape, const Aabb<D>& box) {
     fat_boxes[shape] = box;
-    trees[tree_of[shapes[shape].body]].move(shapes[shape].leaf, fat_boxes[shape]);
     mark_moved(shape);
+    some_leaves_are_old.store(true, std::memory_order_relaxed);
 }
 
 /// Takes down what is asked of the shapes of the body in each step, so that it lies close together.
@@ -208,22 +241,14 @@ void WorldState<D>::refresh_boxes(double dt) {
         for (std::size_t k = begin; k < end; ++k) renewed[k] = renew_boxes(awake[k], dt, falling);
     });
     moving_shapes.clear();
-    new_leaves.clear();
     for (std::size_t k = 0; k < awake.size(); ++k) {
         each_shape_of(awake[k], [&](std::uint32_t shape) {
             moving_shapes.push_back(shape);
             if (!renewed[k] || !(has_new_box[shape] & renewed_now)) return;
             has_new_box[shape] &= static_cast<std::uint8_t>(~renewed_now);
             mark_moved(shape);
-            new_leaves.push_back(shapes[shape].leaf);
+            some_leaves_are_old.store(true, std::memory_order_relaxed);
         });
-    }
-    Tree<D>& tree = trees[of_moving];
-    const auto box_of = [&](std::uint32_t shape) -> const OuterBox<D>& { return fat_boxes[shape]; };
-    if (10 * new_leaves.size() > static_cast<std::size_t>(tree.size())) {
-        tree.move_all(new_leaves, box_of);
-    } else {
-        for (const std::int32_t leaf : new_leaves) tree.move(leaf, box_of(tree.payload(leaf)));
     }
 }
 
@@ -263,7 +288,9 @@ void WorldState<D>::keep_in_boxes() {
     template void WorldState<D>::insert_leaf(std::uint32_t);                        \
     template void WorldState<D>::remove_leaf(std::uint32_t);                        \
     template void WorldState<D>::plant();                                           \
-    template void WorldState<D>::plant_for_queries();                               \
+    template void WorldState<D>::meet_anew(std::uint32_t);                          \
+    template void WorldState<D>::refresh_tree();                                    \
+    template void WorldState<D>::prepare_trees_for_queries();                       \
     template void WorldState<D>::refresh_boxes(double);                             \
     template void WorldState<D>::measure_extents(std::uint32_t);                    \
     template bool WorldState<D>::is_as_foreseen(std::size_t, double, double) const; \

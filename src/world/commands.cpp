@@ -91,7 +91,7 @@ void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
     change(i, k);
     change(k, i);
     w.remove_contacts_between(i, k);
-    for (const ShapeId<D>& id : w.infos[i].shapes) w.mark_moved(id.index);
+    for (const ShapeId<D>& id : w.infos[i].shapes) w.meet_anew(id.index);
 }
 
 template <int D>

@@ -110,15 +110,17 @@ std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>
 template <int D>
 void WorldState<D>::list_fast_contacts() {
     fast.clear();
+    fixed_contacts.clear();
+    if (trees[of_fixed].size() == 0) return;
     for (std::size_t k = 0; k < awake.size(); ++k) {
         if ((outcomes[k] & went_far) && moving[awake[k]] == moves_freely) fast.push_back(awake[k]);
     }
     if (!std::ranges::is_sorted(fast)) std::ranges::sort(fast);
-    fixed_contacts.clear();
     if (fast.empty()) return;
     for (const std::uint32_t body : fast) {
         each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
-        list_strays(body);
+        // What came no further than foreseen is still in its box, and all that this meets are its pairs.
+        if (outcomes[place[body]] & went_astray) list_strays(body);
     }
     sort_fixed_contacts();
 }

@@ -21,9 +21,11 @@ void WorldState<D>::report_contacts() {
     events.clear();
     std::swap(events.contact_ends, dropped_contacts);
     touch_changes.clear();
-    solver.report(scheduler.get(), [&](std::uint32_t i) {
-        solver.read(caches[i], contacts[i]);
-        touch_changes.push_back(i);
+    solver.report(scheduler.get(), [&](std::uint32_t i) { touch_changes.push_back(i); });
+    constexpr std::size_t worth_a_worker = 64;
+    run_range(scheduler.get(), touch_changes.size(), worth_a_worker, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            solver.read(caches[touch_changes[k]], contacts[touch_changes[k]]);
     });
     for (const std::uint32_t i : loose) {
         if (i == ContactRecord<D>::nowhere || contacts[i].place) continue;

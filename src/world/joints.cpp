@@ -141,7 +141,7 @@ void part(WorldState<D>& w, const JointRecord<D>& joint, bool begins) {
     if (begins) {
         w.remove_contacts_between(a, b);
     } else {
-        for (const ShapeId<D>& id : w.infos[a].shapes) w.mark_moved(id.index);
+        for (const ShapeId<D>& id : w.infos[a].shapes) w.meet_anew(id.index);
     }
 }
 

@@ -168,10 +168,15 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
 template <int D>
 void WorldState<D>::collide(double dt) {
     list_patches();
+    // Those that are found now come straight from the solver; what it knows of them is read side by side.
+    const std::size_t first_found = loose.size();
     solver.refresh(states, lane_shapes, static_cast<float>(speculative_distance), scheduler.get(),
                    [&](std::uint32_t i) {
-                       if (contacts[i].loose == ContactRecord<D>::nowhere) loosen(i);
+                       if (contacts[i].loose != ContactRecord<D>::nowhere) return;
+                       contacts[i].loose = static_cast<std::uint32_t>(loose.size());
+                       loose.push_back(i);
                    });
+    const std::size_t found_end = loose.size();
     const ApartLimits<float> limits{static_cast<float>(speculative_distance),
                                     static_cast<float>(0.5 * speculative_distance), static_cast<float>(dt),
                                     static_cast<float>(length(definition.gravity) * dt * dt)};
@@ -179,6 +184,7 @@ void WorldState<D>::collide(double dt) {
     run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             ContactRecord<D>& c = contacts[loose[k]];
+            if (first_found <= k && k < found_end) solver.read(caches[loose[k]], c);
             if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[loose[k]], dt);
         }
     });

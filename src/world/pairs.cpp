@@ -53,6 +53,7 @@ void WorldState<D>::meet(std::uint32_t shape_a, std::uint32_t shape_b) {
     const Company &a = company[shape_a], &b = company[shape_b];
     const bool on_ground =
         (a.is_ground || b.is_ground) && !a.senses && !b.senses;  // sensors care for the whole
+    if (on_ground && !has_new_box[shape_a] && !has_new_box[shape_b]) return;
     if ((!on_ground && pairs.contains(key)) || !may_meet(shape_a, shape_b)) return;
     if (on_ground)
         find_facets(shape_a, shape_b);
@@ -61,32 +62,64 @@ void WorldState<D>::meet(std::uint32_t shape_a, std::uint32_t shape_b) {
 }
 
 /// Every pair of a shape whose box is new and a shape, or a facet of a terrain, that it overlaps becomes a
-/// contact. Pairs are sorted before they are taken up, so that the order of contacts depends on the shapes
-/// alone.
+/// contact. Two whose boxes overlapped before are a pair already, or may not be one, so it is enough to look
+/// at those that begin to. Pairs are sorted before they are taken up, so that the order of contacts depends
+/// on the shapes alone.
 template <int D>
 void WorldState<D>::find_pairs() {
     new_pairs.clear();
+    met_boxes.resize(fat_boxes.size(), no_box<D>());
+    for (const std::uint32_t shape : moved_shapes) {
+        if (has_new_box[shape] & meets_anew) met_boxes[shape] = no_box<D>();
+    }
     // Where many move, it is cheaper to look at all that do at once than to ask a tree for each.
     constexpr std::size_t many = 64;
     const bool crowded = moved_shapes.size() >= many && 4 * moved_shapes.size() >= moving_shapes.size();
     if (crowded) {
-        crowd.find(moving_shapes, fat_boxes, has_new_box,
+        crowd.find(moving_shapes, fat_boxes, met_boxes, scheduler.get(),
                    [&](std::uint32_t shape, std::uint32_t other) { meet(shape, other); });
     }
+    ask_trees(crowded);
     for (const std::uint32_t shape : moved_shapes) {
-        if (!shape_slots.in_use(shape)) continue;
-        const auto visit = [&](std::uint32_t other) {
-            // Two that are both new meet once.
-            if (shape != other && (!has_new_box[other] || shape < other)) meet(shape, other);
-        };
-        const TreeKind own = tree_of[company[shape].body];
-        if (!crowded || own != of_moving) trees[of_moving].query(fat_boxes[shape], visit);
-        trees[of_resting].query(fat_boxes[shape], visit);
-        if (own != of_fixed) trees[of_fixed].query(fat_boxes[shape], visit);
+        has_new_box[shape] = 0;
+        // Of a terrain other facets may be near each time.
+        met_boxes[shape] = company[shape].is_ground ? no_box<D>() : fat_boxes[shape];
     }
-    for (const std::uint32_t shape : moved_shapes) has_new_box[shape] = 0;
     moved_shapes.clear();
     take_up_pairs();
+}
+
+/// What the shapes with new boxes come near that stands still, and where there is no crowd, that moves.
+template <int D>
+void WorldState<D>::ask_trees(bool crowded) {
+    constexpr std::size_t stretch = 128;
+    const bool some_fixed = trees[of_fixed].size() > 0, some_resting = trees[of_resting].size() > 0;
+    const auto asks_moving = [&](std::uint32_t shape) {
+        return !crowded || tree_of[company[shape].body] != of_moving;
+    };
+    if (std::ranges::any_of(moved_shapes, asks_moving))
+        refresh_tree();
+    else if (!some_fixed && !some_resting)
+        return;
+    meeting.look_through(scheduler.get(), moved_shapes.size(), stretch,
+                         [&](std::size_t begin, std::size_t end, std::vector<PairKey>& near) {
+                             for (std::size_t i = begin; i < end; ++i) {
+                                 const std::uint32_t shape = moved_shapes[i];
+                                 if (!shape_slots.in_use(shape)) continue;
+                                 const auto visit = [&](std::uint32_t other) {
+                                     // Two that are both new meet once.
+                                     const bool here =
+                                         shape != other && (!has_new_box[other] || shape < other);
+                                     if (here && !overlaps(met_boxes[shape], met_boxes[other]))
+                                         near.push_back({shape, other});
+                                 };
+                                 if (asks_moving(shape)) trees[of_moving].query(fat_boxes[shape], visit);
+                                 trees[of_resting].query(fat_boxes[shape], visit);
+                                 if (tree_of[company[shape].body] != of_fixed)
+                                     trees[of_fixed].query(fat_boxes[shape], visit);
+                             }
+                         });
+    meeting.each([&](const PairKey& pair) { meet(pair.a, pair.b); });
 }
 
 template <int D>
@@ -141,17 +174,38 @@ void WorldState<D>::set_surface(ContactRecord<D>& c) const {
     c.rolling = static_cast<float>(std::max(a.rolling_resistance, b.rolling_resistance) * radius);
 }
 
-/// Forgets the pairs whose boxes parted; only a box that is new can have left another.
+/// Lists the contacts whose boxes parted; only a box that is new can have left another.
 template <int D>
-void WorldState<D>::drop_pairs() {
+void WorldState<D>::list_parting() {
+    // Where many are new it is quicker to look at all contacts in their order.
+    if (8 * moved_shapes.size() >= contacts.size()) {
+        constexpr std::size_t stretch = 2048;
+        parting.look_through(scheduler.get(), contacts.size(), stretch,
+                             [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& parted) {
+                                 for (std::size_t i = begin; i < end; ++i) {
+                                     const auto contact = static_cast<std::uint32_t>(i);
+                                     const std::uint32_t a = shape_of_list(contact_links.node(contact, 0)),
+                                                         b = shape_of_list(contact_links.node(contact, 1));
+                                     const bool is_news = has_new_box[a] || has_new_box[b];
+                                     if (is_news && !are_near(contact, a, b)) parted.push_back(contact);
+                                 }
+                             });
+        parting.each([&](std::uint32_t contact) { picked.push_back(contact); });
+        return;
+    }
     for (const std::uint32_t shape : moved_shapes) {
         for (const bool on_fixed : {false, true}) {
             contact_links.each(contact_list(shape, on_fixed), [&](std::uint32_t contact, std::uint32_t list) {
-                const std::uint32_t other = shape_of_list(list);
-                if (!are_near(contact, shape, other)) picked.push_back(contact);
+                if (!are_near(contact, shape, shape_of_list(list))) picked.push_back(contact);
             });
         }
     }
+}
+
+/// Forgets the pairs whose boxes parted.
+template <int D>
+void WorldState<D>::drop_pairs() {
+    list_parting();
     remove_picked_contacts();
     if (sensor_pairs.empty()) return;
     for (const std::uint32_t shape : moved_shapes) {

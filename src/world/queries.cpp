@@ -189,14 +189,14 @@ ShapeQuery<D> checked(const WorldState<D>& world, const Solid<D>& solid, const T
 template <int D>
 std::optional<WorldHit<D>> World<D>::cast_ray(const Ray<D>& ray, const QueryFilter<D>& filter) const {
     check(ray);
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     return RayQuery<D>{*state_, ray, filter}.first();
 }
 
 template <int D>
 std::vector<WorldHit<D>> World<D>::cast_ray_all(const Ray<D>& ray, const QueryFilter<D>& filter) const {
     check(ray);
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     const RayQuery<D> query{*state_, ray, filter};
     std::vector<WorldHit<D>> result;
     for (const Found<D>& found : all_hits<D>(query, [&](std::uint32_t shape) { return query.cast(shape); }))
@@ -207,7 +207,7 @@ std::vector<WorldHit<D>> World<D>::cast_ray_all(const Ray<D>& ray, const QueryFi
 template <int D>
 bool World<D>::cast_ray_any(const Ray<D>& ray, const QueryFilter<D>& filter) const {
     check(ray);
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     const RayQuery<D> query{*state_, ray, filter};
     bool any = false;
     query([&](std::uint32_t shape, double limit) {
@@ -232,7 +232,7 @@ void World<D>::cast_rays(std::span<const Ray<D>> rays, std::span<std::optional<W
             throw Error("rays[" + std::to_string(i) + "]." + error.what());
         }
     }
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     constexpr std::size_t stretch = 256;  // rays
     run_range(pool.get(), rays.size(), stretch, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = RayQuery<D>{*state_, rays[i], filter}.first();
@@ -244,7 +244,7 @@ std::optional<WorldHit<D>> World<D>::cast_shape(const Solid<D>& solid, const Tra
                                                 const Vec<D>& translation,
                                                 const QueryFilter<D>& filter) const {
     const ShapeQuery<D> query = checked(*state_, solid, placed, translation, filter);
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     const auto best = first_hit<D>(query, [&](std::uint32_t shape) { return query.cast(shape); });
     return best ? std::optional(state_->named(best->shape, best->hit)) : std::nullopt;
 }
@@ -254,7 +254,7 @@ std::vector<WorldHit<D>> World<D>::cast_shape_all(const Solid<D>& solid, const T
                                                   const Vec<D>& translation,
                                                   const QueryFilter<D>& filter) const {
     const ShapeQuery<D> query = checked(*state_, solid, placed, translation, filter);
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     std::vector<WorldHit<D>> result;
     for (const Found<D>& found : all_hits<D>(query, [&](std::uint32_t shape) { return query.cast(shape); }))
         result.push_back(state_->named(found.shape, found.hit));
@@ -265,7 +265,7 @@ template <int D>
 std::vector<ShapeId<D>> World<D>::overlapping(const Solid<D>& solid, const Transform<D>& placed,
                                               const QueryFilter<D>& filter) const {
     const Transform<D> unit = checked(placed);
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     return state_->shapes_in(grown_by_rounding(bounds(solid.shape(), unit)), filter,
                              [&](std::uint32_t shape) {
                                  return overlap_shapes(state_->shapes[shape].shape, solid.shape(),
@@ -283,7 +283,7 @@ std::vector<ShapeId<D>> World<D>::in_box(const Aabb<D>& box, const QueryFilter<D
                    "is less than box.lower, " + to_text(box.lower[i]));
         }
     }
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     return state_->shapes_in(box, filter, [&](std::uint32_t shape) {
         return overlaps(bounds(state_->shapes[shape].shape, state_->placement_of(shape)), box);
     });
@@ -292,7 +292,7 @@ std::vector<ShapeId<D>> World<D>::in_box(const Aabb<D>& box, const QueryFilter<D
 template <int D>
 std::vector<ShapeId<D>> World<D>::at_point(const Vec<D>& point, const QueryFilter<D>& filter) const {
     check(point, "point");
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     return state_->shapes_in(grown_by_rounding(Aabb<D>{point, point}), filter, [&](std::uint32_t shape) {
         return holds(state_->shapes[shape].shape, apply_inverse(state_->placement_of(shape), point));
     });
@@ -303,7 +303,7 @@ std::optional<NearestPoint<D>> World<D>::nearest_point(const Vec<D>& point, doub
                                                        const QueryFilter<D>& filter) const {
     check(point, "point");
     if (!(max_distance >= 0)) refuse("max_distance", max_distance, "is negative or not a number");
-    state_->plant_for_queries();
+    state_->prepare_trees_for_queries();
     const WorldState<D>& w = *state_;
     std::uint32_t best = 0;
     double least = std::numeric_limits<double>::infinity();

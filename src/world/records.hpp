@@ -23,6 +23,13 @@ struct Company {
     bool is_ground = false;  ///< it is a terrain
 };
 
+/// What is new about the fat box of a shape.
+enum BoxNews : std::uint8_t {
+    is_new = 1,       ///< it changed
+    renewed_now = 2,  ///< it changes while new boxes are looked for
+    meets_anew = 4,   ///< some of its pairs may be gone, or may be from now on, whose boxes overlap as before
+};
+
 /// How a body moves in a step.
 enum : std::uint8_t {
     stands_still,   ///< fixed, at rest or asleep

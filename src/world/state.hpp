@@ -12,6 +12,7 @@
 #include "collision/tree.hpp"
 #include "core/adjacency.hpp"
 #include "core/crew.hpp"
+#include "core/gathered.hpp"
 #include "core/pair_set.hpp"
 #include "core/profiler.hpp"
 #include "core/slots.hpp"
@@ -58,20 +59,26 @@ struct WorldState {
     // Shapes, by index.
     Slots shape_slots;
     std::vector<ShapeRecord<D>> shapes;
-    std::vector<Company> company;              ///< by shape
-    std::vector<Extent<D>> extents;            ///< by shape
-    std::array<Tree<D>, 3> trees;              ///< of shapes, by `TreeKind`
-    std::vector<TreeKind> tree_of;             ///< by body: where its shapes are
-    std::vector<OuterBox<D>> fat_boxes;        ///< by shape
-    std::vector<std::uint8_t> has_new_box;     ///< by shape: its fat box changed since pairs were last found
+    std::vector<Company> company;        ///< by shape
+    std::vector<Extent<D>> extents;      ///< by shape
+    std::array<Tree<D>, 3> trees;        ///< of shapes, by `TreeKind`
+    std::vector<TreeKind> tree_of;       ///< by body: where its shapes are
+    std::vector<OuterBox<D>> fat_boxes;  ///< by shape
+    std::vector<OuterBox<D>> met_boxes;  ///< by shape: the fat box of when pairs were last found, or `no_box`
+                                         ///< if it is not known to have all pairs of then
+    std::vector<std::uint8_t> has_new_box;     ///< by shape: bits of `BoxNews` since pairs were last found
     std::vector<std::uint8_t> renewed;         ///< by place in `awake`: has any of its shapes a new box?
     std::vector<std::uint32_t> moved_shapes;   ///< those that have one
     std::vector<std::uint32_t> moving_shapes;  ///< those of the bodies that move in this step
-    std::vector<std::int32_t> new_leaves;      ///< leaves of moving shapes with new boxes
-    std::vector<std::uint32_t> unplanted;      ///< shapes that are in no tree yet
+    std::vector<std::int32_t> new_leaves;      ///< leaves of moving shapes whose boxes are newer
+    std::atomic<bool> some_leaves_are_old = false;  ///< in the tree of what moves
+    double cost_when_built = 0;                     ///< of that tree
+    std::vector<std::uint32_t> unplanted;           ///< shapes that are in no tree yet
     std::atomic<bool> some_unplanted = false;
     std::mutex planting;
     Sweep<D> crowd;
+    Gathered<std::uint32_t> parting;  ///< contacts whose boxes parted
+    Gathered<PairKey> meeting;        ///< shapes that trees found near one another
 
     Forces<D> forces;
 
@@ -166,11 +173,15 @@ struct WorldState {
     void remove_leaf(std::uint32_t shape);
     void set_box(std::uint32_t shape, const Aabb<D>& box);
     void plant();
-    void plant_for_queries();
+    void refresh_tree();
+    void prepare_trees_for_queries();
     void mark_moved(std::uint32_t shape);
+    void meet_anew(std::uint32_t shape);
 
     // pairs.cpp: who is near whom.
     void drop_pairs();
+    void list_parting();
+    void ask_trees(bool crowded);
     void find_pairs();
     void take_up_pairs();
     void meet(std::uint32_t shape_a, std::uint32_t shape_b);
