@@ -73,6 +73,20 @@ constexpr Symmetric3<T> steiner(T mass, const Vec<3, T>& offset) {
     return (diagonal(square, square, square) - outer_square(offset)) * mass;
 }
 
+/// The rotation by the angle v, |v| ≤ π/4, or by |v| ≤ π/2 about v. For doubles and lanes of them.
+template <class T>
+constexpr Rotation<2, T> exp_small(const T& v) {
+    const auto [sine, cosine] = sin_cos_near_zero(v);
+    return {cosine, sine};
+}
+/// q = (v/|v| sin |v|/2, cos |v|/2): the series in |v|²/4 need no root and no division.
+template <class T>
+constexpr Rotation<3, T> exp_small(const Vec<3, T>& v) {
+    const T z = T(0.25) * dot(v, v);
+    const Vec<3, T> u = (T(0.5) + T(0.5) * z * sin_series(z)) * v;
+    return {u.x, u.y, u.z, T(1) - T(0.5) * z + z * z * cos_series(z)};
+}
+
 /// The rotation by |v| about v; in the plane, by the angle v.
 template <int D>
 Rotation<D> exp_rotation(const Angular<D>& v) {
@@ -80,13 +94,8 @@ Rotation<D> exp_rotation(const Angular<D>& v) {
         const auto [sine, cosine] = sin_cos(v);
         return {cosine, sine};
     } else {
-        // q = (v/|v| sin |v|/2, cos |v|/2); up to a quarter turn the series in |v|²/4 need no root and no
-        // division.
         const double z = 0.25 * dot(v, v);
-        if (z <= pi * pi / 16) {
-            const Vec3 u = (0.5 + 0.5 * z * sin_series(z)) * v;
-            return {u.x, u.y, u.z, 1 - 0.5 * z + z * z * cos_series(z)};
-        }
+        if (z <= pi * pi / 16) return exp_small(v);
         const double half = std::sqrt(z);
         const auto [sine, cosine] = sin_cos(half);
         const Vec3 u = (0.5 * sine / half) * v;

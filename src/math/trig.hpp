@@ -9,36 +9,43 @@ namespace carom::detail {
 
 constexpr double pi = 3.14159265358979323846;
 
-struct SinCos {
-    double sin, cos;
+template <class T>
+struct SinCosOf {
+    T sin, cos;
 };
+using SinCos = SinCosOf<double>;
 
 /// (sin √z / √z − 1) / z for 0 ≤ z ≤ (π/4)². The best polynomial of its degree for the relative error of sin
 /// (found by Remez's exchange, 2^-58 after rounding of the coefficients).
-constexpr double sin_series(double z) {
-    return -0.16666666666666666 +
-           z * (0.008333333333333323 +
-                z * (-0.00019841269841254793 +
-                     z * (2.7557319214060945e-06 +
-                          z * (-2.5052104880817937e-08 +
-                               z * (1.6058363031089445e-10 + z * -7.578533554134821e-13)))));
+template <class T>
+constexpr T sin_series(T z) {
+    return T(-0.16666666666666666) +
+           z * (T(0.008333333333333323) +
+                z * (T(-0.00019841269841254793) +
+                     z * (T(2.7557319214060945e-06) +
+                          z * (T(-2.5052104880817937e-08) +
+                               z * (T(1.6058363031089445e-10) + z * T(-7.578533554134821e-13))))));
 }
 
 /// (cos √z − 1 + z/2) / z² for 0 ≤ z ≤ (π/4)². The best polynomial of its degree for the relative error of
 /// cos (found by Remez's exchange, 2^-59 after rounding of the coefficients).
-constexpr double cos_series(double z) {
-    return 0.041666666666666595 + z * (-0.001388888888887305 +
-                                       z * (2.480158728884658e-05 +
-                                            z * (-2.7557314177775723e-07 +
-                                                 z * (2.087570062992732e-09 + z * -1.1358525277791304e-11))));
+template <class T>
+constexpr T cos_series(T z) {
+    return T(0.041666666666666595) +
+           z * (T(-0.001388888888887305) +
+                z * (T(2.480158728884658e-05) +
+                     z * (T(-2.7557314177775723e-07) +
+                          z * (T(2.087570062992732e-09) + z * T(-1.1358525277791304e-11)))));
 }
 
-/// sin(x + rest) and cos(x + rest) for |x| ≤ π/4 and a rest below half an ulp of x.
-constexpr SinCos sin_cos_near_zero(double x, double rest = 0) {
-    const double z = x * x;
-    const double sine = x + (x * z * sin_series(z) + rest * (1 - 0.5 * z));
-    const double half = 0.5 * z, head = 1 - half;
-    const double cosine = head + (((1 - head) - half) + (z * z * cos_series(z) - x * rest));
+/// sin(x + rest) and cos(x + rest) for |x| ≤ π/4 and a rest below half an ulp of x. For doubles and lanes of
+/// them.
+template <class T>
+constexpr SinCosOf<T> sin_cos_near_zero(T x, T rest = T(0)) {
+    const T z = x * x;
+    const T sine = x + (x * z * sin_series(z) + rest * (T(1) - T(0.5) * z));
+    const T half = T(0.5) * z, head = T(1) - half;
+    const T cosine = head + (((T(1) - head) - half) + (z * z * cos_series(z) - x * rest));
     return {sine, cosine};
 }
 

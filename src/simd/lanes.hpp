@@ -88,7 +88,11 @@ class WideLanes {
     friend WideLanes operator*(WideLanes a, WideLanes b) {
         return {hn::Mul(a.low_, b.low_), hn::Mul(a.high_, b.high_)};
     }
+    friend WideLanes operator/(WideLanes a, WideLanes b) {
+        return {hn::Div(a.low_, b.low_), hn::Div(a.high_, b.high_)};
+    }
     friend WideLanes operator-(WideLanes a) { return {hn::Neg(a.low_), hn::Neg(a.high_)}; }
+    friend WideLanes sqrt(WideLanes a) { return {hn::Sqrt(a.low_), hn::Sqrt(a.high_)}; }
 
     CAROM_INLINE friend void gather_pairs(const double* base, const std::uint32_t* index, std::size_t stride,
                                           WideLanes& a, WideLanes& b) {
@@ -198,6 +202,23 @@ class Lanes {
 
     Register v_;
 };
+
+template <int n>
+CAROM_INLINE void scatter_some(double* base, const std::uint32_t* index, std::size_t stride,
+                               Lanes::Mask wanted, const WideLanes (&values)[n]) {
+    constexpr int half = HWY_LANES(double);
+    alignas(64) double all[n][Lanes::count];
+    for (int k = 0; k < n; ++k) {
+        hn::Store(values[k].low(), WideTag(), all[k]);
+        hn::Store(values[k].high(), WideTag(), all[k] + half);
+    }
+    const std::uint32_t bits = bits_of(wanted);
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+        if (!(bits >> lane & 1)) continue;
+        double* to = base + index[lane] * stride;
+        for (int k = 0; k < n; ++k) to[k] = all[k][lane];
+    }
+}
 
 }  // namespace carom::detail::HWY_NAMESPACE
 

@@ -62,7 +62,15 @@ inline void gather_pairs(const double* base, const std::uint32_t* index, std::si
     a = base[index[0] * stride], b = base[index[0] * stride + 1];
 }
 
-/// Writes them back. No two lanes may have the same index.
+/// Writes `n` doubles that lie side by side at `base + index[lane] · stride` for every lane that is wanted.
+template <int n>
+inline void scatter_some(double* base, const std::uint32_t* index, std::size_t stride, bool wanted,
+                         const double (&values)[n]) {
+    if (!wanted) return;
+    for (int k = 0; k < n; ++k) base[index[0] * stride + k] = values[k];
+}
+
+/// Writes what `gather_quads` read. No two lanes may have the same index.
 inline void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride, float a, float b,
                           float c, float d) {
     float* p = base + index[0] * stride;

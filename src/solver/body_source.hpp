@@ -6,17 +6,17 @@
 #include "solver/drive.hpp"
 #include "solver/marks.hpp"
 
-/// Bodies taken up by the solver, many at once. For any lane type.
+/// Bodies taken up by the solver and put down again, many at once. For any lane type.
 namespace carom::detail {
 
-/// Where the solver finds the bodies of its slots.
+/// Where the solver finds the bodies of its slots, and leaves them.
 template <int D>
 struct BodySource {
-    const BodyState<D>* states = nullptr;
+    BodyState<D>* states = nullptr;
     const BodyMass<D>* masses = nullptr;
     const Load<D>* loads = nullptr;
     const std::uint32_t* bodies = nullptr;  ///< by slot
-    const float* present = nullptr;         ///< by slot: 1 if its body is to be taken up so, else 0
+    float* present = nullptr;               ///< by slot: 1 if its body is to be taken up so, else 0
 
     /// May the body be taken up so? It can be pushed and turned in all directions, turns steadily by itself,
     /// and nothing damps it.
@@ -132,6 +132,50 @@ CAROM_INLINE void take_up(const PlainBody<D, F>& from, Mask wanted, Body<D, F>& 
         rounded<F>(Angular<D, Wide<F>>(from.inverse_inertia * from.torque + Angular<D, Wide<F>>{}), wanted);
     body.inverse_mass = rounded<F>(from.inverse_mass, wanted);
     body.weight.inertia = rounded<F>(from.inverse_inertia, wanted);
+}
+
+/// Turns by far less than what `exp_small` is for, and in the plane not past ±π, where whole turns are
+/// counted.
+template <class F>
+CAROM_INLINE auto is_plain_turn(const F& turned, const Rotation<2, Wide<F>>& before,
+                                const Rotation<2, Wide<F>>& after) {
+    const F from(before.s), to(after.s);
+    const auto same_side = either(both(from > F(0), to > F(0)), both(F(0) > from, F(0) > to));
+    return both(F(0.75f) > fabs(turned), either(F(after.c) > F(0), same_side));
+}
+template <class F>
+CAROM_INLINE auto is_plain_turn(const Vec<3, F>& turned, const Rotation<3, Wide<F>>&,
+                                const Rotation<3, Wide<F>>&) {
+    return F(2) > dot(turned, turned);
+}
+
+template <class W>
+CAROM_INLINE void write_states(double* states, const std::uint32_t* bodies, auto wanted, const Vec<2, W>& p,
+                               const Rotation<2, W>& q, const Vec<2, W>& v, const W& w) {
+    const W all[7] = {p.x, p.y, q.c, q.s, v.x, v.y, w};
+    scatter_some(states, bodies, PoseView<2>::stride, wanted, all);
+}
+template <class W>
+CAROM_INLINE void write_states(double* states, const std::uint32_t* bodies, auto wanted, const Vec<3, W>& p,
+                               const Rotation<3, W>& q, const Vec<3, W>& v, const Vec<3, W>& w) {
+    const W all[13] = {p.x, p.y, p.z, q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z};
+    scatter_some(states, bodies, PoseView<3>::stride, wanted, all);
+}
+
+/// Brings the states of plain bodies to the end of the step. Returns for which lanes that was done: of those
+/// that are wanted, all that turned but a little.
+template <int D, class F, class Mask>
+CAROM_INLINE Mask put_down(const BodySource<D>& to, const std::uint32_t* bodies, const Motion<D, F>& m,
+                           const Drive<D, F>& drive, Mask wanted) {
+    using W = Wide<F>;
+    auto* states = reinterpret_cast<double*>(to.states);
+    const Pose<D, F> pose = gather_pose<F>(PoseView<D>{states}, bodies);
+    const Rotation<D, W> after = normalized(exp_small(widened(m.turned)) * pose.rotation);
+    const Mask done = both(wanted, is_plain_turn(m.turned, pose.rotation, after));
+    write_states(states, bodies, done, Vec<D, W>(pose.position + widened(m.moved)), after,
+                 Vec<D, W>(widened(m.v) + widened(drive.lost)),
+                 Angular<D, W>(widened(m.w) + widened(drive.lost_spin)));
+    return done;
 }
 
 }  // namespace carom::detail

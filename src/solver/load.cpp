@@ -39,9 +39,20 @@ void Solver<D>::set_free_axes(const SolverInput<D>& input) {
     }
 }
 
+/// A worker's share of the slots, in whole blocks.
+template <int D>
+Part Solver<D>::share_of_blocks(const Crew& crew) const {
+    return crew.part(drives_.blocks_for(slots_.size()), 4);
+}
+
+template <int D>
+BodySource<D> Solver<D>::source(const SolverInput<D>& input) {
+    return {input.states.data(), input.masses.data(), input.loads.data(), source_.data(), present_.data()};
+}
+
 template <int D>
 void Solver<D>::load_bodies(const SolverInput<D>& input, const Crew& crew) {
-    const Part part = crew.part(drives_.blocks_for(slots_.size()), 4);
+    const Part part = share_of_blocks(crew);
     const auto width = static_cast<std::uint32_t>(drives_.width());
     const auto first = static_cast<std::uint32_t>(part.begin) * width,
                end = static_cast<std::uint32_t>(part.end) * width;
@@ -50,10 +61,7 @@ void Solver<D>::load_bodies(const SolverInput<D>& input, const Crew& crew) {
         source_[slot] = loaded ? slots_.body(slot) : 0;
         present_[slot] = loaded && BodySource<D>::is_plain(input.masses[source_[slot]]) ? 1.0f : 0.0f;
     }
-    if (part.size() > 0) {
-        passes_->load({view_, drives_.data(), part}, {input.states.data(), input.masses.data(),
-                                                      input.loads.data(), source_.data(), present_.data()});
-    }
+    if (part.size() > 0) passes_->load({view_, drives_.data(), part}, source(input));
     for (std::uint32_t slot = first; slot < end; ++slot) {
         if (present_[slot] == 0 && is_loaded(slot)) load_body(input, slot);
     }
@@ -159,30 +167,31 @@ void settle_spin(const BodyState<2>&, const BodyMass<2>&, double, double, BodySt
 }  // namespace
 
 template <int D>
-void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) const {
-    const Part part = crew.part(slots_.size() - view_.first_movable, 64);
-    for (std::size_t k = part.begin; k < part.end; ++k) {
-        const auto slot = static_cast<std::uint32_t>(view_.first_movable + k);
-        if (!is_loaded(slot)) continue;
-        const std::uint32_t index = slots_.body(slot);
-        BodyState<D>& state = input.states[index];
-        const BodyMass<D>& mass = input.masses[index];
-        const Motion<D, float> m = gather<float>(view_, &slot).motion;
-        const Drive<D, float> drive = drives_.get(slot);
-        const auto move = [&] {
-            state.position += narrow<double>(m.moved);
-            turn<D>(state, narrow<double>(m.turned));
-            state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
-            state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
-        };
-        if (mass.isotropic || mass.inverse_mass == 0) {
-            move();
-            continue;
-        }
-        const BodyState<D> before = state;
-        move();
-        settle_spin(before, mass, input.step, narrow<double>(m.turned), state);
+void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) {
+    const Part part = share_of_blocks(crew);
+    if (part.size() > 0) passes_->store({view_, drives_.data(), part}, source(input));
+    const std::size_t end = std::min<std::size_t>(part.end * drives_.width(), slots_.size());
+    for (std::size_t k = std::max<std::size_t>(part.begin * drives_.width(), view_.first_movable); k < end;
+         ++k) {
+        const auto slot = static_cast<std::uint32_t>(k);
+        if (present_[slot] == 0 && is_loaded(slot)) store_body(input, slot);
     }
+}
+
+template <int D>
+void Solver<D>::store_body(const SolverInput<D>& input, std::uint32_t slot) const {
+    const std::uint32_t index = slots_.body(slot);
+    BodyState<D>& state = input.states[index];
+    const BodyMass<D>& mass = input.masses[index];
+    const Motion<D, float> m = gather<float>(view_, &slot).motion;
+    const Drive<D, float> drive = drives_.get(slot);
+    const BodyState<D> before = state;
+    state.position += narrow<double>(m.moved);
+    turn<D>(state, narrow<double>(m.turned));
+    state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
+    state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
+    if (mass.isotropic || mass.inverse_mass == 0) return;
+    settle_spin(before, mass, input.step, narrow<double>(m.turned), state);
 }
 
 #define CAROM_INSTANTIATE(D)                                                  \
@@ -190,7 +199,7 @@ void Solver<D>::store_bodies(const SolverInput<D>& input, const Crew& crew) cons
     template void Solver<D>::set_free_axes(const SolverInput<D>&);            \
     template void Solver<D>::load_bodies(const SolverInput<D>&, const Crew&); \
     template void Solver<D>::prepare_contacts(const Crew&);                   \
-    template void Solver<D>::store_bodies(const SolverInput<D>&, const Crew&) const;
+    template void Solver<D>::store_bodies(const SolverInput<D>&, const Crew&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE

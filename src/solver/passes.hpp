@@ -91,6 +91,9 @@ struct Passes {
     // Over bodies.
     /// Fills records and drives from the bodies' states.
     void (*load)(const BodySpan<D>&, const BodySource<D>&);
+    /// Brings the states of the bodies that are present to the end of the step, but for those that turned
+    /// far: these are no longer present then.
+    void (*store)(const BodySpan<D>&, const BodySource<D>&);
     /// Takes the velocities as what the kept impulses make, and leaves what `look_ahead` wants.
     void (*begin_warm)(const BodySpan<D>&, float h);
     /// Puts the velocities of the start back, ready for the first sub-step.

@@ -179,6 +179,24 @@ struct PassesIn {
         }
     }
 
+    static void store(const BodySpan<D>& span, const BodySource<D>& to) {
+        const Drive<D, F>* drives = reinterpret_cast<const Drive<D, F>*>(span.drives);
+        std::uint32_t slots[width];
+        for (std::size_t k = span.blocks.begin; k < span.blocks.end; ++k) {
+            float* present = to.present + k * width;
+            for (int lane = 0; lane < width; ++lane)
+                slots[lane] = static_cast<std::uint32_t>(k * width + lane);
+            const auto wanted = load_lanes<F>(present) > F(0.5f);
+            if (!any(wanted)) continue;
+            const Motion<D, F> motion = gather<F>(span.view, slots).motion;
+            const auto done = put_down(to, to.bodies + k * width, motion, drives[k], wanted);
+            const std::uint32_t left = bits_of(both(wanted, !done));
+            for (int lane = 0; left >> lane; ++lane) {
+                if (left >> lane & 1) present[lane] = 0;
+            }
+        }
+    }
+
     static void begin_warm(const BodySpan<D>& span, float h) {
         each_body(span, true, true, [h](Motion<D, F>& m, Drive<D, F>& d) CAROM_INLINE_LAMBDA {
             detail::begin_warm(m, d, F(h));
@@ -230,6 +248,7 @@ struct PassesIn {
                                    tally,
                                    touch,
                                    load,
+                                   store,
                                    begin_warm,
                                    begin,
                                    integrate_velocities,

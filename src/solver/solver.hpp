@@ -220,6 +220,8 @@ class Solver {
         return slot != BodySlots::still && slot < slots_.size() && slots_.body(slot) != BodySlots::none &&
                (touching_[slot] > 0 || jointed_[slot] != 0);
     }
+    Part share_of_blocks(const Crew& crew) const;
+    BodySource<D> source(const SolverInput<D>& input);
     void load_bodies(const SolverInput<D>& input, const Crew& crew);
     void load_body(const SolverInput<D>& input, std::uint32_t slot);
     void set_free_axes(const SolverInput<D>& input);
@@ -236,7 +238,8 @@ class Solver {
                 input.step / input.substeps,
                 input.joint_method};
     }
-    void store_bodies(const SolverInput<D>& input, const Crew& crew) const;
+    void store_bodies(const SolverInput<D>& input, const Crew& crew);
+    void store_body(const SolverInput<D>& input, std::uint32_t slot) const;
 
     // settle.cpp: contacts that begin.
     void find_struck();
@@ -276,7 +279,7 @@ class Solver {
     RecordView<D> view_;
     std::vector<float> records_, free_axes_;
     std::vector<std::uint32_t> source_;  ///< by slot: its body, if it is loaded
-    std::vector<float> present_;         ///< by slot: 1 if that is taken up in lanes, else 0
+    std::vector<float> present_;         ///< by slot: 1 if that is moved in lanes, else 0
     LaneStore<Drive<D, float>> drives_;  ///< by slot
 
     std::size_t count_ = 0;  ///< of contacts
