@@ -204,7 +204,8 @@ class World {
     AwakeReason<D> awake_reason(BodyId<D> body) const;
     std::string_view name(BodyId<D> body) const;
     std::uint64_t user_data(BodyId<D> body) const;
-    /// The shapes of a body, in the order in which they were added.
+    /// The shapes of a body, in the order in which they were added. Like all lists that a world shows, this one
+    /// may be looked at until something is added, removed or stepped.
     std::span<const ShapeId<D>> shapes(BodyId<D> body) const;
     const ShapeDefinition<D>& shape(ShapeId<D> shape) const;
     BodyId<D> body_of(ShapeId<D> shape) const;

@@ -3,16 +3,12 @@
 #include <cassert>
 #include <limits>
 
+#include "core/crew.hpp"
+#include "core/room.hpp"
+
 namespace carom::detail {
 
 namespace {
-
-/// A stretch of the leaves of a tree being built; its node is to become `child[side]` of `parent`.
-struct Part {
-    std::size_t begin, end;
-    std::int32_t parent;
-    int side;
-};
 
 template <int D>
 PackedBox packed(const OuterBox<D>& box, std::int32_t leaf) {
@@ -258,21 +254,47 @@ void Tree<D>::build(std::span<const Entry> entries) {
 }
 
 template <int D>
-void Tree<D>::insert_all(std::span<const Entry> entries, std::span<std::int32_t> leaves) {
+void Tree<D>::insert_all(std::span<const Entry> entries, std::span<std::int32_t> leaves,
+                         Scheduler* scheduler) {
     constexpr std::size_t few = 64;
     const bool at_once = entries.size() > few && 4 * entries.size() > static_cast<std::size_t>(leaf_count_);
-    if (at_once) nodes_.reserve(nodes_.size() + 2 * entries.size());
+    if (at_once && nodes_.empty()) return plant(entries, leaves, scheduler);
+    if (at_once) make_room(nodes_, 2 * entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
         leaves[i] = add_leaf(entries[i].box, entries[i].payload);
         if (!at_once) attach(leaves[i]);
     }
-    if (at_once) rebuild();
+    if (at_once) rebuild(scheduler);
+}
+
+/// What a tree is built from. A part of the pieces that is split before number `middle` has its node at
+/// `inner[middle - 1]`; or, where no leaf has a place yet, at 2 `middle` − 1, and the leaf of piece i at 2i.
+/// So all nodes of a part lie together.
+template <int D>
+struct Tree<D>::Growth {
+    std::span<PackedBox> pieces;          ///< numbered by leaf or, without `inner`, by entry
+    std::span<const std::int32_t> inner;  ///< places of all nodes that are no leaves
+    std::span<const Entry> entries;
+    std::span<std::int32_t> leaves;
+};
+
+/// Fills the empty tree.
+template <int D>
+void Tree<D>::plant(std::span<const Entry> entries, std::span<std::int32_t> leaves, Scheduler* scheduler) {
+    std::vector<PackedBox> pieces;
+    make_room(pieces, entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        pieces.push_back(packed(entries[i].box, std::int32_t(i)));
+    make_room(nodes_, 2 * entries.size() - 1);
+    nodes_.resize(2 * entries.size() - 1);
+    leaf_count_ = std::int32_t(entries.size());
+    grow({pieces, {}, entries, leaves}, {0, pieces.size(), none, 0}, scheduler);
 }
 
 template <int D>
-void Tree<D>::rebuild() {
+void Tree<D>::rebuild(Scheduler* scheduler) {
     std::vector<PackedBox> pieces;
-    pieces.reserve(static_cast<std::size_t>(leaf_count_));
+    make_room(pieces, static_cast<std::size_t>(leaf_count_));
     for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
         if (nodes_[i].height == 0)
             pieces.push_back(packed(nodes_[i].box, i));
@@ -280,27 +302,61 @@ void Tree<D>::rebuild() {
             free(i);
     }
     root_ = none;
+    if (pieces.empty()) return;
     std::vector<std::int32_t> inner;
-    inner.reserve(pieces.size());
-    std::vector<Part> parts;
-    if (!pieces.empty()) parts.push_back({0, pieces.size(), none, 0});
+    make_room(inner, pieces.size());
+    while (inner.size() + 1 < pieces.size()) inner.push_back(allocate());
+    grow({pieces, inner, {}, {}}, {0, pieces.size(), none, 0}, scheduler);
+}
+
+/// Makes the node of a part that is split there, but for what depends on its children. Returns its index.
+template <int D>
+std::int32_t Tree<D>::place(const Growth& growth, const Part& part, std::size_t middle) {
+    const bool single = part.size() == 1, fresh = !growth.entries.empty();
+    const std::uint32_t number = growth.pieces[part.begin].number();
+    const auto node = fresh    ? std::int32_t(single ? 2 * part.begin : 2 * middle - 1)
+                      : single ? std::int32_t(number)
+                               : growth.inner[middle - 1];
+    if (fresh && single) {
+        nodes_[node].box = growth.entries[number].box;
+        nodes_[node].child[1] = std::int32_t(growth.entries[number].payload);
+        growth.leaves[number] = node;
+    }
+    nodes_[node].parent = part.parent;
+    if (part.parent == none)
+        root_ = node;
+    else
+        nodes_[part.parent].child[part.side] = node;
+    return node;
+}
+
+/// Builds the tree of a part: splits it until what is left is a sixteenth of it, goes on with each of these
+/// parts, for which a worker is enough, and then encloses what it made.
+template <int D>
+void Tree<D>::grow(const Growth& growth, const Part& whole, Scheduler* scheduler) {
+    constexpr std::size_t few = 1024, ways = 16;
+    const std::size_t least = whole.size() <= few ? 0 : std::max(few, whole.size() / ways);
+    std::vector<Part> parts{whole}, branches;
+    std::vector<std::int32_t> inner;
     while (!parts.empty()) {
         const Part part = parts.back();
         parts.pop_back();
-        const bool single = part.end - part.begin == 1;
-        const std::int32_t node = single ? std::int32_t(pieces[part.begin].number()) : allocate();
-        nodes_[node].parent = part.parent;
-        if (part.parent == none)
-            root_ = node;
-        else
-            nodes_[part.parent].child[part.side] = node;
+        if (part.size() <= least) {
+            branches.push_back(part);
+            continue;
+        }
+        const bool single = part.size() == 1;
+        const std::size_t middle =
+            single ? part.end : part.begin + split(growth.pieces.subspan(part.begin, part.size()));
+        const std::int32_t node = place(growth, part, middle);
         if (single) continue;
         inner.push_back(node);
-        const std::size_t middle =
-            part.begin + split(std::span(pieces).subspan(part.begin, part.end - part.begin));
         parts.push_back({middle, part.end, node, 1});
         parts.push_back({part.begin, middle, node, 0});
     }
+    run_range(scheduler, branches.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) grow(growth, branches[i], nullptr);
+    });
     // Every node was made before its children.
     for (auto node = inner.rbegin(); node != inner.rend(); ++node) enclose_children(*node);
 }
@@ -341,8 +397,10 @@ std::size_t Tree<D>::split(std::span<PackedBox> pieces) {
     std::array<Bin, most_bins> bins;
     constexpr PackedBounds nothing;
     for (int i = 0; i < bin_count; ++i) bins[i] = {nothing.lower, nothing.upper, 0};
-    for (const PackedBox& piece : pieces) {
-        Bin& bin = bins[bin_of(piece)];
+    for (PackedBox& piece : pieces) {
+        const int place = bin_of(piece);
+        piece.upper[3] = float(place);
+        Bin& bin = bins[place];
         bin.lower = least(bin.lower, piece.lower);
         bin.upper = greatest(bin.upper, piece.upper);
         ++bin.count;
@@ -360,8 +418,8 @@ std::size_t Tree<D>::split(std::span<PackedBox> pieces) {
     }
     // The outermost bins hold a piece each, so no border leaves a side empty.
     const int border = int(std::min_element(cost.begin() + 1, cost.begin() + bin_count) - cost.begin());
-    const auto middle =
-        std::partition(pieces.begin(), pieces.end(), [&](const PackedBox& p) { return bin_of(p) < border; });
+    const auto middle = std::partition(pieces.begin(), pieces.end(),
+                                       [&](const PackedBox& p) { return p.upper[3] < float(border); });
     return std::size_t(middle - pieces.begin());
 }
 

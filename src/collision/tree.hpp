@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "carom/scheduler.hpp"
 #include "collision/box.hpp"
 #include "geometry/packed_box.hpp"
 
@@ -67,10 +68,12 @@ class Tree {
     /// Bounding Volume Hierarchies, 2007).
     void build(std::span<const Entry> entries);
     /// Adds many leaves, whose indices go into `leaves`: where they are many beside those that there are, by
-    /// building the tree anew.
-    void insert_all(std::span<const Entry> entries, std::span<std::int32_t> leaves);
+    /// building the tree anew, with the scheduler's workers if there is one. The tree is the same in any
+    /// case.
+    void insert_all(std::span<const Entry> entries, std::span<std::int32_t> leaves,
+                    Scheduler* scheduler = nullptr);
     /// Builds the tree anew over the leaves that it has; they keep their indices.
-    void rebuild();
+    void rebuild(Scheduler* scheduler = nullptr);
 
     const OuterBox<D>& box(std::int32_t leaf) const { return nodes_[leaf].box; }
     std::uint32_t payload(std::int32_t leaf) const { return std::uint32_t(nodes_[leaf].child[1]); }
@@ -136,6 +139,20 @@ class Tree {
     void refit();
     std::int32_t add_leaf(const OuterBox<D>& box, std::uint32_t payload);
     static std::size_t split(std::span<PackedBox> pieces);
+
+    /// A stretch of the leaves of a tree that is being built; its node is to become `child[side]` of
+    /// `parent`.
+    struct Part {
+        std::size_t begin, end;
+        std::int32_t parent;
+        int side;
+
+        std::size_t size() const { return end - begin; }
+    };
+    struct Growth;
+    void plant(std::span<const Entry> entries, std::span<std::int32_t> leaves, Scheduler* scheduler);
+    std::int32_t place(const Growth& growth, const Part& part, std::size_t middle);
+    void grow(const Growth& growth, const Part& whole, Scheduler* scheduler);
 
     std::vector<Node> nodes_;
     std::int32_t root_ = none;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/column.hpp"
+
 namespace carom::detail {
 
 /// Links between nodes, and for each node a list of those that it has: lists within arrays, so that a link
@@ -12,7 +14,7 @@ class Adjacency {
   public:
     /// Lets there be room for nodes below this number, so that the first link of one does not pay for it.
     void make_room(std::uint32_t nodes) {
-        if (nodes > first_.size()) first_.resize(nodes, none);
+        if (nodes > first_.size()) first_.resize(nodes);
     }
 
     void add(std::uint32_t link, std::uint32_t a, std::uint32_t b) {
@@ -32,7 +34,7 @@ class Adjacency {
         links_[to] = links_[from];
         for (const std::uint32_t side : {0u, 1u}) {
             const End& end = links_[to].end[side];
-            (end.before == none ? first_[links_[to].node[side]] : at(end.before).after) = 2 * to + side;
+            set_after(end.before, links_[to].node[side], 2 * to + side);
             if (end.after != none) at(end.after).before = 2 * to + side;
         }
     }
@@ -44,7 +46,7 @@ class Adjacency {
     template <class Visit>
     void each(std::uint32_t node, Visit&& visit) const {
         if (node >= first_.size()) return;
-        for (std::uint32_t i = first_[node]; i != none;) {
+        for (std::uint32_t i = first_of(node); i != none;) {
             const Link& link = links_[i / 2];
             visit(i / 2, link.node[1 - i % 2]);
             i = link.end[i % 2].after;
@@ -63,22 +65,31 @@ class Adjacency {
         End end[2];
     };
 
+    std::uint32_t first_of(std::uint32_t node) const { return first_[node] - 1; }
+    /// After that end, or if it is `none`, first of the node, comes `next`.
+    void set_after(std::uint32_t before, std::uint32_t node, std::uint32_t next) {
+        if (before == none)
+            first_[node] = next + 1;
+        else
+            at(before).after = next;
+    }
     End& at(std::uint32_t i) { return links_[i / 2].end[i % 2]; }
     void attach(std::uint32_t i) {
         const std::uint32_t node = links_[i / 2].node[i % 2];
-        if (node >= first_.size()) first_.resize(node + 1, none);
-        at(i) = {none, first_[node]};
-        if (first_[node] != none) at(first_[node]).before = i;
-        first_[node] = i;
+        if (node >= first_.size()) first_.resize(node + 1);
+        const std::uint32_t after = first_of(node);
+        at(i) = {none, after};
+        if (after != none) at(after).before = i;
+        set_after(none, node, i);
     }
     void detach(std::uint32_t i) {
         const End end = at(i);
-        (end.before == none ? first_[links_[i / 2].node[i % 2]] : at(end.before).after) = end.after;
+        set_after(end.before, links_[i / 2].node[i % 2], end.after);
         if (end.after != none) at(end.after).before = end.before;
     }
 
-    std::vector<Link> links_;           ///< by number
-    std::vector<std::uint32_t> first_;  ///< end by node
+    std::vector<Link> links_;      ///< by number
+    Column<std::uint32_t> first_;  ///< by node: one more than the number of the end, or 0 where there is none
 };
 
 }  // namespace carom::detail

@@ -13,11 +13,11 @@ void use_large_pages(void* data, std::size_t bytes);
 
 /// Makes room for more elements at once, so that the list neither moves while they come nor, if this is
 /// called often, each time that it is.
-template <class T>
-void make_room(std::vector<T>& list, std::size_t more) {
+template <class T, class Allocator>
+void make_room(std::vector<T, Allocator>& list, std::size_t more) {
     const std::size_t needed = list.size() + more;
     if (needed <= list.capacity()) return;
-    std::vector<T> larger;
+    std::vector<T, Allocator> larger;
     larger.reserve(std::max(needed, 2 * list.capacity()));
     use_large_pages(larger.data(), larger.capacity() * sizeof(T));
     for (T& element : list) larger.push_back(std::move(element));

@@ -20,6 +20,16 @@ class Slots {
         return index;
     }
 
+    /// As many places that were never given out before, one after the other. Returns the first.
+    std::uint32_t acquire_new(std::size_t count) {
+        const std::uint32_t first = size();
+        generations_.resize(first + count, 1);
+        return first;
+    }
+
+    /// Will the next place be one that was used before?
+    bool any_free() const { return !free_.empty(); }
+
     void release(std::uint32_t index) {
         ++generations_[index];
         free_.push_back(index);

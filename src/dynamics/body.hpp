@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carom/body.hpp"
+#include "core/short_list.hpp"
 #include "math/dim.hpp"
 
 namespace carom::detail {
@@ -55,22 +56,38 @@ struct MassOverrides {
     std::optional<Inertia<D>> inertia{};
 };
 
+/// What few bodies have.
+template <int D>
+struct BodyExtras {
+    std::vector<std::uint32_t> ignored;  ///< indices of the bodies with which it does not collide, ascending
+    std::vector<std::uint32_t> jointed;  ///< the same because of joints: once for each
+    std::string name;
+    std::optional<MassOverrides<D>> overrides;
+};
+
 /// What else the world knows of a body.
 template <int D>
 struct BodyInfo {
-    BodyType type = BodyType::dynamic;
     bool awake = true;
     bool can_sleep = true;
     bool bullet = false;
     bool disabled = false;  ///< quarantined: it stays where it is and nothing touches it
     double rest_time = 0;   ///< how long it has been slow and in its place, s
     Transform<D> rest{};    ///< that place: centre of mass and rotation when the rest began
-    std::vector<ShapeId<D>> shapes;
-    std::vector<std::uint32_t> ignored;  ///< indices of the bodies with which it does not collide, ascending
-    std::vector<std::uint32_t> jointed;  ///< the same because of joints: once for each
-    std::string name;
+    ShortList<ShapeId<D>> shapes;
     std::uint64_t user_data = 0;
-    std::shared_ptr<const MassOverrides<D>> overrides;  ///< nothing where there are none
+    std::unique_ptr<BodyExtras<D>> extras;  ///< nothing where there are none
+
+    /// To read.
+    const BodyExtras<D>& seen() const {
+        static const BodyExtras<D> none;
+        return extras ? *extras : none;
+    }
+    /// To write.
+    BodyExtras<D>& own() {
+        if (!extras) extras = std::make_unique<BodyExtras<D>>();
+        return *extras;
+    }
 };
 
 /// Placement of the body's frame.

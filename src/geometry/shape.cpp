@@ -6,6 +6,7 @@
 
 #include "geometry/hull.hpp"
 #include "geometry/terrain.hpp"
+#include "geometry/turned_box.hpp"
 #include "math/check.hpp"
 
 namespace carom::detail {
@@ -262,13 +263,6 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
             const auto [lowest, highest] = range_of<D>(*shape.core, axis);
             return {lowest - shape.radius, highest + shape.radius};
         }
-        case ShapeKind::box: {
-            const double middle = dot(axis, shape.a);
-            const Vec<D> local = unrotate(shape.rotation, axis);
-            double half = shape.radius;
-            for (int i = 0; i < D; ++i) half += std::fabs(local[i]) * shape.b[i];
-            return {middle - half, middle + half};
-        }
         case ShapeKind::terrain: {
             // The box that it has, seen from another frame.
             const Aabb<D>& box = shape.terrain->bounds();
@@ -284,6 +278,7 @@ std::array<double, 2> reach(const Shape<D>& shape, const Vec<D>& axis) {
             const double across = dot(axis, shape.a);
             return {across == -1 ? -shape.offset : -1e300, across == 1 ? shape.offset : 1e300};
         }
+        case ShapeKind::box:  // see `bounds`
         case ShapeKind::cylinder:
         case ShapeKind::cone:
             break;
@@ -335,6 +330,12 @@ Shape<D> make_shape(const ShapeDefinition<D>& definition, Scheduler* scheduler) 
 
 template <int D>
 Aabb<D> bounds(const Shape<D>& shape, const Transform<D>& placed) {
+    if (shape.kind == ShapeKind::box) {
+        const Vec<D> middle = apply(placed, shape.a);
+        Vec<D> half = reach_of(placed.rotation * shape.rotation, shape.b);
+        for (int i = 0; i < D; ++i) half[i] += shape.radius;
+        return {middle - half, middle + half};
+    }
     Aabb<D> box;
     for (int i = 0; i < D; ++i) {
         const auto [lowest, highest] = reach(shape, unrotate(placed.rotation, unit<D>(i)));

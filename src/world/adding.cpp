@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 
+#include "core/crew.hpp"
 #include "core/room.hpp"
 #include "math/check.hpp"
 #include "world/state.hpp"
@@ -14,6 +16,18 @@ using namespace detail;
 
 namespace {
 
+/// Lets there be the lists' elements for that many bodies from now on.
+template <int D>
+void lengthen_for_bodies(WorldState<D>& w, std::size_t count) {
+    w.applied.resize(count);
+    w.tree_of.resize(count);
+    w.moving.resize(count);
+    w.place.resize(count);
+    w.loads.resize(count);
+    w.varies.resize(count);
+    w.fixed_contacts_of.resize(count);
+}
+
 template <int D>
 std::uint32_t new_body_place(WorldState<D>& w) {
     const std::uint32_t i = w.body_slots.acquire();
@@ -22,14 +36,8 @@ std::uint32_t new_body_place(WorldState<D>& w) {
         w.masses.emplace_back();
         w.types.emplace_back();
         w.infos.emplace_back();
-        w.applied.emplace_back();
         w.only_shape.emplace_back();
-        w.tree_of.push_back(of_fixed);
-        w.moving.push_back(stands_still);
-        w.place.emplace_back();
-        w.loads.emplace_back();
-        w.varies.emplace_back();
-        w.fixed_contacts_of.push_back(0);
+        lengthen_for_bodies(w, i + 1);
     } else {
         w.states[i] = {};
         w.masses[i] = {};
@@ -45,25 +53,10 @@ template <int D>
 void make_room_for(WorldState<D>& w, std::size_t bodies, std::size_t shapes) {
     constexpr std::size_t many = 64;
     if (bodies + shapes < many) return;
-    make_room(w.states, bodies);
-    make_room(w.masses, bodies);
-    make_room(w.types, bodies);
-    make_room(w.only_shape, bodies);
-    make_room(w.infos, bodies);
-    make_room(w.applied, bodies);
-    make_room(w.tree_of, bodies);
-    make_room(w.moving, bodies);
-    make_room(w.place, bodies);
-    make_room(w.loads, bodies);
-    make_room(w.varies, bodies);
-    make_room(w.fixed_contacts_of, bodies);
-    make_room(w.body_ids, bodies);
-    make_room(w.shapes, shapes);
-    make_room(w.company, shapes);
-    make_room(w.fat_boxes, shapes);
-    make_room(w.has_new_box, shapes);
-    make_room(w.unplanted, shapes);
-    make_room(w.moved_shapes, shapes);
+    const auto make = [](std::size_t more, auto&... lists) { (make_room(lists, more), ...); };
+    make(bodies, w.states, w.masses, w.types, w.only_shape, w.infos, w.applied, w.tree_of, w.moving, w.place,
+         w.loads, w.varies, w.fixed_contacts_of, w.body_ids);
+    make(shapes, w.shapes, w.company, w.extents, w.fat_boxes, w.has_new_box, w.unplanted, w.moved_shapes);
 }
 
 /// As long as none of these has come to the other side of a wall, nothing has passed through.
@@ -75,24 +68,35 @@ Shape<D> core_of(const Shape<D>& shape) {
     return ball;
 }
 
-/// The shape, without the body that it is on.
 template <int D>
-ShapeRecord<D> recorded(const ShapeDefinition<D>& definition, Shape<D> shape) {
+using Model = std::shared_ptr<const ShapeModel<D>>;
+
+template <int D>
+Model<D> model_of(const ShapeDefinition<D>& definition, Shape<D> shape) {
     const Shape<D> core = core_of(shape);
-    return {std::move(shape), std::make_shared<const ShapeDefinition<D>>(definition), 0, core.a, core.radius};
+    auto model = std::make_shared<ShapeModel<D>>();
+    model->shape = std::move(shape);
+    model->definition = definition;
+    model->core = core.a;
+    model->core_radius = core.radius;
+    return model;
 }
 
 template <int D>
-void set_record(WorldState<D>& w, std::uint32_t i, std::uint32_t body, const ShapeRecord<D>& record) {
-    w.shapes[i] = record;
-    w.shapes[i].body = body;
-    const ShapeDefinition<D>& s = *record.definition;
-    w.company[i] = {s.filter.category, s.filter.mask, body,
-                    s.filter.group,    s.sensor,      record.shape.kind == ShapeKind::terrain};
+Company company_of(const ShapeModel<D>& model, std::uint32_t body) {
+    const ShapeDefinition<D>& s = model.definition;
+    return {s.filter.category, s.filter.mask, body,
+            s.filter.group,    s.sensor,      model.shape.kind == ShapeKind::terrain};
 }
 
 template <int D>
-ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeRecord<D>& record) {
+void set_model(WorldState<D>& w, std::uint32_t i, std::uint32_t body, const Model<D>& model) {
+    w.shapes[i] = {model, body};
+    w.company[i] = company_of(*model, body);
+}
+
+template <int D>
+ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const Model<D>& model) {
     const std::uint32_t i = w.shape_slots.acquire();
     if (i == w.shapes.size()) {
         w.shapes.emplace_back();
@@ -102,7 +106,7 @@ ShapeId<D> put_shape(WorldState<D>& w, std::uint32_t body, const ShapeRecord<D>&
         w.has_new_box.push_back(0);
         w.contact_links.make_room(WorldState<D>::contact_list(i + 1, false));
     }
-    set_record(w, i, body, record);
+    set_model(w, i, body, model);
     const auto id = w.shape_slots.template id<ShapeId<D>>(i);
     w.infos[body].shapes.push_back(id);
     return id;
@@ -123,8 +127,8 @@ namespace detail {
 
 template <int D>
 bool Blueprint<D>::serves(const BodyDefinition<D>& b) const {
-    const auto same_shape = [](const ShapeDefinition<D>& wanted, const ShapeRecord<D>& one) {
-        return wanted == *one.definition;
+    const auto same_shape = [](const ShapeDefinition<D>& wanted, const Model<D>& one) {
+        return wanted == one->definition;
     };
     return made && b.type == definition.type && b.mass == definition.mass &&
            b.center_of_mass == definition.center_of_mass && b.inertia == definition.inertia &&
@@ -153,7 +157,7 @@ void draw_blueprint(WorldState<D>& w, const BodyDefinition<D>& definition, std::
     plan.definition.locks = definition.locks;
     plan.shapes.clear();
     for (std::size_t k = 0; k < shapes.size(); ++k)
-        plan.shapes.push_back(recorded(definition.shapes[k], std::move(shapes[k])));
+        plan.shapes.push_back(model_of(definition.shapes[k], std::move(shapes[k])));
     plan.mass = {};
     plan.mass.gravity_scale = definition.gravity_scale;
     plan.mass.linear_damping = definition.linear_damping;
@@ -161,9 +165,26 @@ void draw_blueprint(WorldState<D>& w, const BodyDefinition<D>& definition, std::
     plan.mass.locks = definition.locks;
 }
 
-}  // namespace
+/// Where the body is whose frame is at `placed`.
+template <int D>
+BodyState<D> state_at(const Transform<D>& placed, const Vec<D>& center) {
+    BodyState<D> s;
+    s.rotation = normalized(placed.rotation);
+    s.position = placed.position + rotate(s.rotation, center);
+    return s;
+}
 
-namespace {
+template <int D>
+BodyInfo<D> info_of(const BodyDefinition<D>& definition) {
+    BodyInfo<D> info;
+    info.can_sleep = definition.can_sleep;
+    info.bullet = definition.bullet;
+    info.user_data = definition.user_data;
+    if (!definition.name.empty()) info.own().name = definition.name;
+    if (definition.mass || definition.center_of_mass || definition.inertia)
+        info.own().overrides = overrides_of(definition);
+    return info;
+}
 
 /// Puts a body into the world that the blueprint serves, at `placed`; the first of its kind says what mass it
 /// has.
@@ -173,26 +194,17 @@ BodyId<D> put_body(WorldState<D>& w, const BodyDefinition<D>& definition, const 
     Blueprint<D>& plan = w.blueprint;
     const std::uint32_t i = new_body_place(w);
     w.types[i] = definition.type;
-    BodyState<D>& s = w.states[i];
-    s.position = placed.position;
-    s.rotation = normalized(placed.rotation);
-    BodyInfo<D>& info = w.infos[i];
-    info.can_sleep = definition.can_sleep;
-    info.bullet = definition.bullet;
     w.bullets += definition.bullet;
-    info.name = definition.name;
-    info.user_data = definition.user_data;
-    if (definition.mass || definition.center_of_mass || definition.inertia)
-        info.overrides = std::make_shared<const MassOverrides<D>>(overrides_of(definition));
-    info.shapes.reserve(plan.shapes.size());
-    for (const ShapeRecord<D>& record : plan.shapes) put_shape(w, i, record);
+    w.infos[i] = info_of(definition);
+    for (const Model<D>& model : plan.shapes) put_shape(w, i, model);
+    BodyState<D>& s = w.states[i];
     BodyMass<D>& m = w.masses[i];
     m = plan.mass;
+    s = state_at(placed, m.center);
     if (is_first) {
         w.update_mass(i);  // moves the place from the frame to the centre of mass
         plan.mass = m;
     } else {
-        s.position += rotate(s.rotation, m.center);
         w.measure_extents(i);
     }
     w.some_locked |= definition.locks != Locks{};
@@ -203,11 +215,113 @@ BodyId<D> put_body(WorldState<D>& w, const BodyDefinition<D>& definition, const 
         w.roused.push_back(i);
     }
     w.tree_of[i] = w.tree_for(i);
-    for (const ShapeId<D>& shape : info.shapes) w.insert_leaf(shape.index);
+    for (const ShapeId<D>& shape : w.infos[i].shapes) w.insert_leaf(shape.index);
     const auto id = w.body_slots.template id<BodyId<D>>(i);
     w.body_ids.push_back(id);
     return id;
 }
+
+/// Bodies like one that was just put into the world, in places of the lists that nobody had before: each list
+/// is written from end to end, and several at a time where there are workers.
+template <int D>
+class Copies {
+  public:
+    Copies(WorldState<D>& w, const BodyDefinition<D>& definition, BodyId<D> like,
+           std::span<const Transform<D>> places)
+        : w_(w),
+          definition_(definition),
+          like_(like.index),
+          mass_(w.masses[like.index]),
+          models_(w.blueprint.shapes),
+          places_(places) {}
+
+    void put(std::vector<BodyId<D>>& added) {
+        first_ = w_.body_slots.acquire_new(places_.size());
+        first_shape_ = w_.shape_slots.acquire_new(shape_count());
+        const std::array<void (Copies::*)(), 4> lists{&Copies::put_masses, &Copies::put_infos,
+                                                      &Copies::put_shapes, &Copies::put_places};
+        constexpr std::size_t worth_workers = 1000;
+        Scheduler* const workers = places_.size() < worth_workers ? nullptr : w_.scheduler.get();
+        run_range(workers, lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) (this->*lists[i])();
+        });
+        added.insert(added.end(), w_.body_ids.end() - static_cast<std::ptrdiff_t>(places_.size()),
+                     w_.body_ids.end());
+        if (shape_count() > 0) w_.some_unplanted.store(true, std::memory_order_relaxed);
+        w_.bullets += static_cast<std::uint32_t>(definition_.bullet * places_.size());
+        if (definition_.type != BodyType::fixed) put_movable();
+    }
+
+  private:
+    std::size_t shape_count() const { return places_.size() * models_.size(); }
+    std::uint32_t body(std::size_t k) const { return first_ + static_cast<std::uint32_t>(k); }
+    std::uint32_t shape(std::size_t k) const {
+        return first_shape_ + static_cast<std::uint32_t>(k * models_.size());
+    }
+
+    void put_masses() {
+        w_.masses.resize(w_.masses.size() + places_.size(), mass_);
+        w_.types.resize(w_.types.size() + places_.size(), definition_.type);
+        lengthen_for_bodies(w_, w_.types.size());
+        if (w_.tree_of[like_] != of_fixed)
+            std::fill(w_.tree_of.begin() + first_, w_.tree_of.end(), TreeKind(w_.tree_of[like_]));
+    }
+
+    void put_infos() {
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            w_.body_ids.push_back(w_.body_slots.template id<BodyId<D>>(body(k)));
+            w_.only_shape.push_back(models_.size() == 1 ? shape(k) : w_.no_shape);
+            BodyInfo<D>& info = w_.infos.emplace_back(info_of(definition_));
+            for (std::uint32_t j = 0; j < models_.size(); ++j)
+                info.shapes.push_back(w_.shape_slots.template id<ShapeId<D>>(shape(k) + j));
+        }
+    }
+
+    void put_shapes() {
+        std::vector<Company> company;
+        for (const Model<D>& model : models_) company.push_back(company_of(*model, 0));
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            for (std::uint32_t j = 0; j < models_.size(); ++j) {
+                w_.shapes.push_back({models_[j], body(k)});
+                w_.company.push_back(company[j]);
+                w_.company.back().body = body(k);
+                w_.unplanted.push_back(shape(k) + j);
+                w_.moved_shapes.push_back(shape(k) + j);
+            }
+        }
+        w_.has_new_box.resize(w_.shapes.size(), static_cast<std::uint8_t>(is_new | meets_anew));
+        w_.extents.resize(w_.shapes.size());
+        if (!w_.shapes.empty())
+            w_.contact_links.make_room(
+                WorldState<D>::contact_list(static_cast<std::uint32_t>(w_.shapes.size()), false));
+    }
+
+    void put_places() {
+        const BodyState<D> like = w_.states[like_];
+        for (const Transform<D>& placed : places_) {
+            BodyState<D> s = state_at(placed, mass_.center);
+            s.velocity = like.velocity;
+            s.angular_velocity = like.angular_velocity;
+            w_.states.push_back(s);
+            for (const Model<D>& model : models_) w_.fat_boxes.push_back(first_box(*model, frame(s, mass_)));
+        }
+    }
+
+    void put_movable() {
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            w_.measure_extents(body(k));
+            w_.movable.push_back(body(k));
+            w_.roused.push_back(body(k));
+        }
+    }
+
+    WorldState<D>& w_;
+    const BodyDefinition<D>& definition_;
+    std::uint32_t like_, first_ = 0, first_shape_ = 0;
+    BodyMass<D> mass_;
+    const std::vector<Model<D>>& models_;
+    std::span<const Transform<D>> places_;
+};
 
 /// Lets the blueprint serve the definition; true if it did not before. Throws `Error` for what cannot be.
 template <int D>
@@ -220,7 +334,7 @@ bool prepare_blueprint(WorldState<D>& w, const BodyDefinition<D>& definition) {
 /// What has much data is not kept beyond its body.
 template <int D>
 void forget_large(Blueprint<D>& plan) {
-    if (std::ranges::any_of(plan.shapes, [](const auto& r) { return r.shape.kind == ShapeKind::terrain; }))
+    if (std::ranges::any_of(plan.shapes, [](const auto& m) { return m->shape.kind == ShapeKind::terrain; }))
         plan = {};
 }
 
@@ -230,7 +344,8 @@ template <int D>
 BodyId<D> World<D>::add_body(const BodyDefinition<D>& definition) {
     WorldState<D>& w = *state_;
     const Transform<D> placed{definition.position, definition.rotation};
-    validate_motion(definition, placed);
+    validate_place(placed);
+    validate_motion(definition);
     const bool is_first = prepare_blueprint(w, definition);
     make_room_for(w, 1, w.blueprint.shapes.size());
     const BodyId<D> id = put_body(w, definition, placed, is_first);
@@ -244,19 +359,17 @@ std::vector<BodyId<D>> World<D>::add_bodies(const BodyDefinition<D>& definition,
     WorldState<D>& w = *state_;
     std::vector<BodyId<D>> added;
     if (places.empty()) return added;
-    std::size_t checked = 0;
-    try {
-        for (; checked < places.size(); ++checked) validate_motion(definition, places[checked]);
-    } catch (const Error& error) {
-        throw Error("places[" + std::to_string(checked) + "]." + error.what());
-    }
-    bool is_first = prepare_blueprint(w, definition);
+    validate_places(places);
+    validate_motion(definition);
+    const bool is_first = prepare_blueprint(w, definition);
     make_room_for(w, places.size(), places.size() * w.blueprint.shapes.size());
-    added.reserve(places.size());
-    for (const Transform<D>& placed : places) {
-        added.push_back(put_body(w, definition, placed, is_first));
-        is_first = false;
-    }
+    make_room(added, places.size());
+    added.push_back(put_body(w, definition, places[0], is_first));
+    // Places that were used before are taken first, in the order in which they would be one by one.
+    while (added.size() < places.size() && (w.body_slots.any_free() || w.shape_slots.any_free()))
+        added.push_back(put_body(w, definition, places[added.size()], false));
+    if (added.size() < places.size())
+        Copies<D>(w, definition, added.back(), places.subspan(added.size())).put(added);
     forget_large(w.blueprint);
     return added;
 }
@@ -267,7 +380,7 @@ ShapeId<D> World<D>::add_shape(BodyId<D> body, const ShapeDefinition<D>& definit
     const std::uint32_t i = w.index(body);
     Shape<D> shape = make_shape(definition, w.scheduler.get());
     require_place_for(shape, w.types[i]);
-    const ShapeId<D> id = put_shape(w, i, recorded(definition, std::move(shape)));
+    const ShapeId<D> id = put_shape(w, i, model_of(definition, std::move(shape)));
     w.update_mass(i);
     w.forget_manifolds_of(i);
     w.insert_leaf(id.index);
@@ -281,13 +394,13 @@ void World<D>::remove_shape(ShapeId<D> shape) {
     const std::uint32_t body = w.shapes[w.index(shape)].body;
     std::vector<const ShapeDefinition<D>*> rest;
     for (const ShapeId<D>& id : w.infos[body].shapes) {
-        if (id != shape) rest.push_back(w.shapes[id.index].definition.get());
+        if (id != shape) rest.push_back(&w.shapes[id.index].definition());
     }
     body_mass<D>(w.types[body], overrides_of(w.infos[body]), rest);
     w.wake_neighbours(body);
     w.wake_islands();
     drop_shape(w, shape);
-    std::erase(w.infos[body].shapes, shape);
+    w.infos[body].shapes.erase(shape);
     w.update_mass(body);
     w.forget_manifolds_of(body);
 }
@@ -300,13 +413,13 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
     require_place_for(made, w.types[body]);
     std::vector<const ShapeDefinition<D>*> all;
     for (const ShapeId<D>& id : w.infos[body].shapes)
-        all.push_back(id == shape ? &definition : w.shapes[id.index].definition.get());
+        all.push_back(id == shape ? &definition : &w.shapes[id.index].definition());
     body_mass<D>(w.types[body], overrides_of(w.infos[body]), all);
 
-    const Filter &before = w.shapes[i].definition->filter, &now = definition.filter;
+    const Filter &before = w.shapes[i].definition().filter, &now = definition.filter;
     // Contacts with a terrain name its facets, which are others now.
-    const bool is_ground = made.kind == ShapeKind::terrain || w.shapes[i].shape.kind == ShapeKind::terrain;
-    const bool same_company = !is_ground && w.shapes[i].definition->sensor == definition.sensor &&
+    const bool is_ground = made.kind == ShapeKind::terrain || w.shapes[i].shape().kind == ShapeKind::terrain;
+    const bool same_company = !is_ground && w.shapes[i].definition().sensor == definition.sensor &&
                               before.category == now.category && before.mask == now.mask &&
                               before.group == now.group;
     w.wake_neighbours(body);
@@ -316,7 +429,7 @@ void World<D>::set_shape(ShapeId<D> shape, const ShapeDefinition<D>& definition)
         w.remove_visits_of(i);
     }
     w.remove_leaf(i);
-    set_record(w, i, body, recorded(definition, std::move(made)));
+    set_model(w, i, body, model_of(definition, std::move(made)));
     w.update_mass(body);
     w.forget_manifolds_of(body);
     w.insert_leaf(i);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/room.hpp"
+#include "geometry/turned_box.hpp"
 #include "world/meeting.hpp"
 #include "world/state.hpp"
 
@@ -17,24 +19,8 @@ constexpr double box_margin = 0.05, margin_share = 1.0 / 32;
 
 /// What bounces may turn within a step, or be struck, and then strike what is near.
 template <int D>
-double least_margin(const ShapeRecord<D>& shape) {
-    return shape.definition->material.restitution >= lively_restitution ? 0.5 * speculative_distance : 0;
-}
-
-/// How far the rotated box reaches from its middle along the axes of the world.
-Vec<2> reach_of(const Rotation<2>& q, const Vec<2>& half) {
-    const double c = std::fabs(q.c), s = std::fabs(q.s);
-    return {c * half.x + s * half.y, s * half.x + c * half.y};
-}
-Vec<3> reach_of(const Rotation<3>& q, const Vec<3>& half) {
-    const double x = 2 * q.x, y = 2 * q.y, z = 2 * q.z;
-    const double xx = x * q.x, yy = y * q.y, zz = z * q.z, xy = x * q.y, xz = x * q.z, yz = y * q.z,
-                 wx = x * q.w, wy = y * q.w, wz = z * q.w;
-    const auto sum = [&](double a, double b, double c) {
-        return std::fabs(a) * half.x + std::fabs(b) * half.y + std::fabs(c) * half.z;
-    };
-    return {sum(1 - (yy + zz), xy - wz, xz + wy), sum(xy + wz, 1 - (xx + zz), yz - wx),
-            sum(xz - wy, yz + wx, 1 - (xx + yy))};
+double least_margin(const ShapeModel<D>& model) {
+    return model.definition.material.restitution >= lively_restitution ? 0.5 * speculative_distance : 0;
 }
 
 template <int D>
@@ -84,9 +70,14 @@ void WorldState<D>::meet_anew(std::uint32_t shape) {
 }
 
 template <int D>
+Aabb<D> first_box(const ShapeModel<D>& model, const Transform<D>& placed) {
+    return grown(bounds(model.shape, placed), least_margin(model), Vec<D>{});
+}
+
+template <int D>
 void WorldState<D>::insert_leaf(std::uint32_t shape) {
     ShapeRecord<D>& s = shapes[shape];
-    fat_boxes[shape] = grown(bounds(s.shape, frame_of(s.body)), least_margin(s), Vec<D>{});
+    fat_boxes[shape] = first_box(*s.model, frame_of(s.body));
     s.leaf = Tree<D>::none;
     unplanted.push_back(shape);
     some_unplanted.store(true, std::memory_order_relaxed);
@@ -96,9 +87,11 @@ void WorldState<D>::insert_leaf(std::uint32_t shape) {
 /// Shapes come into the trees together, before anybody looks there: a tree that is built over many at once is
 /// better, and far cheaper.
 template <int D>
-void WorldState<D>::plant() {
+void WorldState<D>::plant(Scheduler* workers) {
     if (unplanted.empty()) return;
     std::array<std::vector<typename Tree<D>::Entry>, 3> entries;
+    const std::uint32_t first = shapes[unplanted.front()].body;
+    make_room(entries[tree_of[first]], unplanted.size());  // which are often all of a kind
     for (const std::uint32_t shape : unplanted) {
         const bool is_gone = !shape_slots.in_use(shape) || shapes[shape].leaf != Tree<D>::none;
         if (is_gone) continue;  // or it came back and is listed twice
@@ -108,8 +101,10 @@ void WorldState<D>::plant() {
     unplanted.clear();
     std::vector<std::int32_t> leaves;
     for (std::size_t kind = 0; kind < trees.size(); ++kind) {
+        leaves.clear();
+        make_room(leaves, entries[kind].size());
         leaves.resize(entries[kind].size());
-        trees[kind].insert_all(entries[kind], leaves);
+        trees[kind].insert_all(entries[kind], leaves, workers);
         for (std::size_t i = 0; i < leaves.size(); ++i) shapes[entries[kind][i].payload].leaf = leaves[i];
     }
     some_unplanted.store(false, std::memory_order_release);
@@ -148,7 +143,7 @@ void WorldState<D>::prepare_trees_for_queries() {
         !some_leaves_are_old.load(std::memory_order_acquire))
         return;
     const std::lock_guard lock(planting);
-    plant();
+    plant(nullptr);
     refresh_tree();
 }
 
@@ -168,10 +163,11 @@ void WorldState<D>::set_box(std::uint32_t shape, const Aabb<D>& box) {
 /// Takes down what is asked of the shapes of the body in each step, so that it lies close together.
 template <int D>
 void WorldState<D>::measure_extents(std::uint32_t body) {
-    const std::vector<ShapeId<D>>& ids = infos[body].shapes;
+    const ShortList<ShapeId<D>>& ids = infos[body].shapes;
     only_shape[body] = ids.size() == 1 ? ids[0].index : no_shape;
+    if (types[body] == BodyType::fixed) return;
     for (const ShapeId<D>& id : ids) {
-        const Shape<D>& shape = shapes[id.index].shape;
+        const Shape<D>& shape = shapes[id.index].shape();
         const Aabb<D> box = bounds(shape, Transform<D>{});
         Extent<D>& extent = extents[id.index];
         extent.radius = core_radius(shape);
@@ -182,7 +178,7 @@ void WorldState<D>::measure_extents(std::uint32_t body) {
         // further than its arc, nor than 2 r. Of a ball only the middle counts.
         const bool is_ball = shape.kind == ShapeKind::ball;
         extent.arm = is_ball ? length(shape.a - masses[body].center) : masses[body].radius;
-        extent.to_strike = least_margin(shapes[id.index]);
+        extent.to_strike = least_margin(*shapes[id.index].model);
     }
 }
 
@@ -218,7 +214,7 @@ bool WorldState<D>::renew_boxes(std::uint32_t body, double dt, double falling) {
         const Extent<D>& extent = extents[shape];
         const double bouncing = extent.to_strike > 0 ? length(way) : 0;
         if (is_in_box(shape, way, turning, falling + bouncing)) return;
-        const Aabb<D> tight = bounds(shapes[shape].shape, frame_of(body));
+        const Aabb<D> tight = bounds(shapes[shape].shape(), frame_of(body));
         const Aabb<D> swept = grown(tight, turning * extent.arm + falling + bouncing, way);
         if (contains(fat_boxes[shape], swept)) return;
         const Vec<D> size = tight.upper - tight.lower;
@@ -275,7 +271,7 @@ void WorldState<D>::keep_in_boxes() {
         if (!(outcomes[k] & (went_astray | was_stopped))) continue;
         const Transform<D> placed = frame_of(awake[k]);
         each_shape_of(awake[k], [&](std::uint32_t shape) {
-            const Aabb<D> tight = bounds(shapes[shape].shape, placed);
+            const Aabb<D> tight = bounds(shapes[shape].shape(), placed);
             if (!contains(fat_boxes[shape], tight)) set_box(shape, tight);
         });
     }
@@ -285,9 +281,10 @@ void WorldState<D>::keep_in_boxes() {
     template TreeKind WorldState<D>::tree_for(std::uint32_t) const;                 \
     template void WorldState<D>::change_tree(std::uint32_t, TreeKind);              \
     template void WorldState<D>::mark_moved(std::uint32_t);                         \
+    template Aabb<D> first_box(const ShapeModel<D>&, const Transform<D>&);          \
     template void WorldState<D>::insert_leaf(std::uint32_t);                        \
     template void WorldState<D>::remove_leaf(std::uint32_t);                        \
-    template void WorldState<D>::plant();                                           \
+    template void WorldState<D>::plant(Scheduler*);                                 \
     template void WorldState<D>::meet_anew(std::uint32_t);                          \
     template void WorldState<D>::refresh_tree();                                    \
     template void WorldState<D>::prepare_trees_for_queries();                       \

@@ -55,7 +55,7 @@ void World<D>::remove_body(BodyId<D> body) {
     w.wake_islands();
     w.remove_contacts_of(i);
     w.remove_joints_of(i);
-    for (const std::uint32_t other : w.infos[i].ignored) std::erase(w.infos[other].ignored, i);
+    for (const std::uint32_t other : w.infos[i].seen().ignored) std::erase(w.infos[other].own().ignored, i);
     for (const ShapeId<D>& shape : w.infos[i].shapes) {
         w.remove_visits_of(shape.index);
         w.remove_leaf(shape.index);
@@ -78,10 +78,10 @@ void World<D>::set_collision(BodyId<D> a, BodyId<D> b, bool enabled) {
     WorldState<D>& w = *state_;
     const std::uint32_t i = w.index(a), k = w.index(b);
     if (i == k) throw Error("body: a body does not collide with itself");
-    const bool was_enabled = !std::ranges::binary_search(w.infos[i].ignored, k);
+    const bool was_enabled = !std::ranges::binary_search(w.infos[i].seen().ignored, k);
     if (enabled == was_enabled) return;
     const auto change = [&](std::uint32_t one, std::uint32_t other) {
-        std::vector<std::uint32_t>& ignored = w.infos[one].ignored;
+        std::vector<std::uint32_t>& ignored = w.infos[one].own().ignored;
         if (enabled)
             std::erase(ignored, other);
         else
@@ -180,10 +180,10 @@ void World<D>::set_type(BodyId<D> body, BodyType type) {
     const std::uint32_t i = w.index(body);
     std::vector<const ShapeDefinition<D>*> definitions;
     for (const ShapeId<D>& id : w.infos[i].shapes) {
-        definitions.push_back(w.shapes[id.index].definition.get());
-        if (w.shapes[id.index].shape.kind == ShapeKind::plane && type != BodyType::fixed)
+        definitions.push_back(&w.shapes[id.index].definition());
+        if (w.shapes[id.index].shape().kind == ShapeKind::plane && type != BodyType::fixed)
             throw Error("type: a body with a plane must be fixed");
-        if (w.shapes[id.index].shape.kind == ShapeKind::terrain && type == BodyType::dynamic)
+        if (w.shapes[id.index].shape().kind == ShapeKind::terrain && type == BodyType::dynamic)
             throw Error("type: a body with a chain, mesh or height field must be fixed or kinematic");
     }
     body_mass<D>(type, overrides_of(w.infos[i]), definitions);
@@ -244,7 +244,7 @@ void World<D>::set_mass_properties(BodyId<D> body, const MassProperties<D>& prop
     require_finite(properties.center, "center");
     validate_inertia(properties.inertia);
     const MassOverrides<D> given{properties.mass, properties.center, properties.inertia};
-    state_->infos[i].overrides = std::make_shared<const MassOverrides<D>>(given);
+    state_->infos[i].own().overrides = given;
     state_->update_mass(i);
     state_->forget_manifolds_of(i);
     state_->wake(i);

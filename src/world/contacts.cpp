@@ -213,8 +213,8 @@ std::optional<Carrying<D>> WorldState<D>::carrying(std::uint32_t contact) {
 template <int D>
 LanePair<D> WorldState<D>::lane_pair(const ContactRecord<D>& c) {
     if (c.facet != no_part) return {};
-    return {lane_shapes.find(c.shape_a, shapes[c.shape_a].shape, masses[c.body_a]),
-            lane_shapes.find(c.shape_b, shapes[c.shape_b].shape, masses[c.body_b])};
+    return {lane_shapes.find(c.shape_a, shapes[c.shape_a].shape(), masses[c.body_a]),
+            lane_shapes.find(c.shape_b, shapes[c.shape_b].shape(), masses[c.body_b])};
 }
 
 /// If nothing has to be known of the contact until its bodies have come nearer, it is put with those that are

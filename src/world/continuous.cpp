@@ -133,12 +133,12 @@ void WorldState<D>::list_strays(std::uint32_t body) {
     for (const ShapeId<D>& id : infos[body].shapes) {
         const ShapeRecord<D>& own = shapes[id.index];
         const auto way_in = [&](const Transform<D>& placed) {
-            const Vec<D> first = apply_inverse(placed, apply(start, own.core));
-            const Vec<D> last = apply_inverse(placed, apply(end, own.core));
+            const Vec<D> first = apply_inverse(placed, apply(start, own.core()));
+            const Vec<D> last = apply_inverse(placed, apply(end, own.core()));
             Aabb<D> box;
             for (int i = 0; i < D; ++i) {
-                box.lower[i] = std::min(first[i], last[i]) - own.core_radius;
-                box.upper[i] = std::max(first[i], last[i]) + own.core_radius;
+                box.lower[i] = std::min(first[i], last[i]) - own.core_radius();
+                box.upper[i] = std::max(first[i], last[i]) + own.core_radius();
             }
             return box;
         };
@@ -149,11 +149,11 @@ void WorldState<D>::list_strays(std::uint32_t body) {
         trees[of_fixed].query(OuterBox<D>(way_in({})), [&](std::uint32_t other) {
             const ShapeRecord<D>& obstacle = shapes[other];
             const bool blocks = !company[id.index].senses && !company[other].senses &&
-                                !obstacle.definition->one_way && may_meet(id.index, other);
+                                !obstacle.definition().one_way && may_meet(id.index, other);
             if (!blocks) return;
-            if (obstacle.shape.kind != ShapeKind::terrain) return add(other, no_part);
-            obstacle.shape.terrain->query(way_in(frame_of(obstacle.body)),
-                                          [&](std::uint32_t facet) { add(other, facet); });
+            if (obstacle.shape().kind != ShapeKind::terrain) return add(other, no_part);
+            obstacle.shape().terrain->query(way_in(frame_of(obstacle.body)),
+                                            [&](std::uint32_t facet) { add(other, facet); });
         });
     }
 }
@@ -167,9 +167,9 @@ void WorldState<D>::stop_at_obstacles() {
     if (!definition.continuous) return;
     // A one-way shape lets pass what goes out of its open side.
     const auto lets_pass = [&](const ContactRecord<D>& c, std::uint32_t body, std::uint32_t shape) {
-        if (!c.special || !shapes[shape].definition->one_way) return false;
+        if (!c.special || !shapes[shape].definition().one_way) return false;
         const Vec<D> way = states[body].position - before[place[body]].position;
-        return c.passing || dot(way, rotate(axes_of(shape), *shapes[shape].definition->one_way)) >= 0;
+        return c.passing || dot(way, rotate(axes_of(shape), *shapes[shape].definition().one_way)) >= 0;
     };
     list_fast_contacts();
     for (const FixedContact& f : fixed_contacts) {
@@ -207,24 +207,24 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const BodyMass<D>& mass = masses[body];
     const BodyState<D>& start = earlier(body);
     const ShapeRecord<D>& own = shapes[shape];
-    const Vec<D> first = apply(frame(start, mass), own.core);
-    const Vec<D> last = apply(frame_of(body), own.core);
+    const Vec<D> first = apply(frame(start, mass), own.core());
+    const Vec<D> last = apply(frame_of(body), own.core());
     const std::uint32_t other_body = shapes[other].body;
     // How far the core came as seen from the obstacle.
     const Vec<D> seen_first = apply_inverse(frame(earlier(other_body), masses[other_body]), first);
     const Vec<D> seen_last = apply_inverse(frame_of(other_body), last);
-    if (length(seen_last - seen_first) <= seen_share * own.core_radius) return;
+    if (length(seen_last - seen_first) <= seen_share * own.core_radius()) return;
 
     const StepMotion<D> sweep(start, states[body]);
-    const Obstacle<D> obstacle{shapes[other].shape, facet,
+    const Obstacle<D> obstacle{shapes[other].shape(), facet,
                                StepMotion<D>(earlier(other_body), states[other_body]), masses[other_body]};
     Shape<D> core;
-    core.a = own.core;
-    core.radius = own.core_radius;
-    const auto passes = first_meeting(core, mass, sweep, obstacle, 1e-3 * own.core_radius);
+    core.a = own.core();
+    core.radius = own.core_radius();
+    const auto passes = first_meeting(core, mass, sweep, obstacle, 1e-3 * own.core_radius());
     if (!passes) return;
-    const double near = std::min(0.5 * speculative_distance, 0.2 * own.core_radius);
-    const auto meets = first_meeting(own.shape, mass, sweep, obstacle, near);
+    const double near = std::min(0.5 * speculative_distance, 0.2 * own.core_radius());
+    const auto meets = first_meeting(own.shape(), mass, sweep, obstacle, near);
     if (meets && meets->share > 0) {
         const BodyState<D> stopped = sweep.at(std::min(meets->share, passes->share));
         states[body].position = stopped.position;
@@ -237,7 +237,7 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const Transform<D> then = frame(obstacle.sweep.at(passes->share), obstacle.mass),
                        now = frame_of(other_body);
     const auto carried = [&](const Vec<D>& v) { return rotate(now.rotation, unrotate(then.rotation, v)); };
-    const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core);
+    const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core());
     const Vec<D> axis = carried(passes->axis);
     const double inwards = dot(axis, now.position + carried(there - then.position) - last);
     if (inwards <= 0) return;
@@ -255,7 +255,7 @@ template <int D>
 void WorldState<D>::meet_ahead(ContactRecord<D>& c, const ContactCache<D>& cache, double dt) const {
     const BodyState<D>&sa = states[c.body_a], &sb = states[c.body_b];
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
-    const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
+    const Shape<D>&shape_a = shapes[c.shape_a].shape(), &shape_b = shapes[c.shape_b].shape();
     const double turning = turning_speed(sa, ma) + turning_speed(sb, mb) + length(definition.gravity) * dt;
     const Vec<D> speed = sb.velocity - sa.velocity;
     constexpr double near = 0.5 * speculative_distance;

@@ -74,7 +74,7 @@ template <int D>
 std::uint32_t WorldState<D>::first_touching_facet(const ShapePair<D>& pair) const {
     std::uint32_t first = ContactRecord<D>::nowhere;
     if (!shape_slots.contains(pair.shape_a) || !shape_slots.contains(pair.shape_b)) return first;
-    const bool a_ground = shapes[pair.shape_a.index].shape.kind == ShapeKind::terrain;
+    const bool a_ground = shapes[pair.shape_a.index].shape().kind == ShapeKind::terrain;
     const std::uint32_t ground = a_ground ? pair.shape_a.index : pair.shape_b.index;
     each_contact_of_shape(a_ground ? pair.shape_b.index : pair.shape_a.index, [&](std::uint32_t contact) {
         const ContactRecord<D>& c = contacts[contact];
@@ -131,7 +131,7 @@ void WorldState<D>::report_begin(const ContactRecord<D>& c) {
 template <int D>
 bool WorldState<D>::overlap(std::uint32_t shape_a, std::uint32_t shape_b) const {
     const ShapeRecord<D>&a = shapes[shape_a], &b = shapes[shape_b];
-    const auto gap = separate_shapes<D>(a.shape, b.shape, relative(frame_of(a.body), frame_of(b.body)));
+    const auto gap = separate_shapes<D>(a.shape(), b.shape(), relative(frame_of(a.body), frame_of(b.body)));
     return gap && gap->distance <= 0;
 }
 

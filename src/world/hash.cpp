@@ -180,9 +180,9 @@ std::uint64_t World<D>::hash() const {
         const BodyInfo<D>& info = w.infos[id.index];
         fold.all(id, w.types[id.index], w.states[id.index], w.masses[id.index], w.applied[id.index].force,
                  w.applied[id.index].torque);
-        fold(info.ignored);
+        fold(info.seen().ignored);
         fold.all(info.awake, info.disabled, info.can_sleep, info.bullet, info.rest_time, info.rest);
-        for (const ShapeId<D>& shape : info.shapes) fold.all(shape, *w.shapes[shape.index].definition);
+        for (const ShapeId<D>& shape : info.shapes) fold.all(shape, w.shapes[shape.index].definition());
     }
     w.forces.each([&](const ForceDefinition<D>& force, bool fired) {
         fold.all(force.kind, force.from, force.to, fired);

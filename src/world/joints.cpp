@@ -136,8 +136,8 @@ template <int D>
 void part(WorldState<D>& w, const JointRecord<D>& joint, bool begins) {
     const std::uint32_t a = joint.body_a, b = joint.body_b;
     if (a == no_body) return;
-    change_ignored(w.infos[a].jointed, b, begins);
-    change_ignored(w.infos[b].jointed, a, begins);
+    change_ignored(w.infos[a].own().jointed, b, begins);
+    change_ignored(w.infos[b].own().jointed, a, begins);
     if (begins) {
         w.remove_contacts_between(a, b);
     } else {

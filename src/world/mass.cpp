@@ -87,7 +87,7 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     std::vector<const ShapeDefinition<D>*> definitions;
     double measured = 0;
     for (const ShapeId<D>& id : info.shapes) {
-        definitions.push_back(shapes[id.index].definition.get());
+        definitions.push_back(&shapes[id.index].definition());
         measured += measure<D>(definitions.back()->geometry);
     }
     const MassProperties<D> p = resolve<D>(overrides_of(info), definitions);
@@ -104,11 +104,11 @@ void WorldState<D>::update_mass(std::uint32_t body) {
     m.inverse_inertia = dynamic && p.inertia != Inertia<D>{} ? inverse(p.inertia) : Inertia<D>{};
     m.isotropic = is_isotropic(p.inertia);
     m.radius = 0;
-    m.core_radius = info.shapes.empty() ? 0 : shapes[info.shapes[0].index].core_radius;
+    m.core_radius = info.shapes.empty() ? 0 : shapes[info.shapes[0].index].core_radius();
     for (const ShapeId<D>& id : info.shapes) {
-        m.core_radius = std::min(m.core_radius, shapes[id.index].core_radius);
-        if (shapes[id.index].shape.kind == ShapeKind::plane) continue;
-        const Aabb<D> box = bounds(shapes[id.index].shape, Transform<D>{});
+        m.core_radius = std::min(m.core_radius, shapes[id.index].core_radius());
+        if (shapes[id.index].shape().kind == ShapeKind::plane) continue;
+        const Aabb<D> box = bounds(shapes[id.index].shape(), Transform<D>{});
         Vec<D> far;
         for (int i = 0; i < D; ++i) far[i] = std::max(m.center[i] - box.lower[i], box.upper[i] - m.center[i]);
         m.radius = std::max(m.radius, length(far));

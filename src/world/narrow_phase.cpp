@@ -41,7 +41,7 @@ template <int D>
 void WorldState<D>::touch(const ContactRecord<D>& c, const BodyState<D>& a, const BodyState<D>& b,
                           double reach, ContactCache<D>& cache) const {
     const BodyMass<D>&ma = masses[c.body_a], &mb = masses[c.body_b];
-    const Shape<D>&shape_a = shapes[c.shape_a].shape, &shape_b = shapes[c.shape_b].shape;
+    const Shape<D>&shape_a = shapes[c.shape_a].shape(), &shape_b = shapes[c.shape_b].shape();
     const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
     Manifold<D> m =
         manifold_between<D>(shape_a, shape_b, c.facet, b_in_a, reach, narrow<double>(cache.normal));
@@ -101,7 +101,7 @@ void WorldState<D>::set_points(const ContactCache<D>& cache, const BodyState<D>&
 template <int D>
 bool WorldState<D>::may_be_struck(const ContactRecord<D>& c) const {
     const auto is_simple = [&](std::uint32_t shape) {
-        const ShapeKind kind = shapes[shape].shape.kind;
+        const ShapeKind kind = shapes[shape].shape().kind;
         return kind == ShapeKind::ball || kind == ShapeKind::plane;
     };
     return c.restitution >= static_cast<float>(lively_restitution) && definition.continuous &&

@@ -42,8 +42,10 @@ bool WorldState<D>::may_meet(std::uint32_t shape_a, std::uint32_t shape_b) const
                             ? a.group > 0
                             : (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
     if (!agreed || infos[a.body].disabled || infos[b.body].disabled) return false;
-    return senses || (!std::ranges::binary_search(infos[a.body].ignored, b.body) &&
-                      !std::ranges::binary_search(infos[a.body].jointed, b.body));
+    const BodyExtras<D>* extras = infos[a.body].extras.get();
+    return senses || !extras ||
+           (!std::ranges::binary_search(extras->ignored, b.body) &&
+            !std::ranges::binary_search(extras->jointed, b.body));
 }
 
 /// Two shapes whose boxes overlap: where they, or facets of a terrain, are no pair yet, they become one.
@@ -143,10 +145,10 @@ void WorldState<D>::take_up_pairs() {
 
 template <int D>
 void WorldState<D>::find_facets(std::uint32_t shape_a, std::uint32_t shape_b) {
-    const bool a_terrain = shapes[shape_a].shape.kind == ShapeKind::terrain;
+    const bool a_terrain = shapes[shape_a].shape().kind == ShapeKind::terrain;
     const ShapeRecord<D>& ground = shapes[a_terrain ? shape_a : shape_b];
     const Aabb<D> box = widened(fat_boxes[a_terrain ? shape_b : shape_a]);
-    ground.shape.terrain->query(box_in(frame_of(ground.body), box), [&](std::uint32_t facet) {
+    ground.shape().terrain->query(box_in(frame_of(ground.body), box), [&](std::uint32_t facet) {
         const PairKey key = PairKey::of(shape_a, shape_b, facet);
         if (!pairs.contains(key)) new_pairs.push_back(key);
     });
@@ -158,15 +160,15 @@ void WorldState<D>::set_surface(ContactRecord<D>& c) const {
     const auto material = [&](std::uint32_t shape) -> const Material& {
         const ShapeRecord<D>& s = shapes[shape];
         const Material* own =
-            s.shape.kind == ShapeKind::terrain ? s.shape.terrain->material(c.facet) : nullptr;
-        return own ? *own : s.definition->material;
+            s.shape().kind == ShapeKind::terrain ? s.shape().terrain->material(c.facet) : nullptr;
+        return own ? *own : s.definition().material;
     };
     const Material &a = material(c.shape_a), &b = material(c.shape_b);
     c.friction = static_cast<float>(std::sqrt(a.friction * b.friction));
     c.restitution = static_cast<float>(std::max(a.restitution, b.restitution));
-    const double radius = std::max(shapes[c.shape_a].shape.radius, shapes[c.shape_b].shape.radius);
+    const double radius = std::max(shapes[c.shape_a].shape().radius, shapes[c.shape_b].shape().radius);
     const auto is_special = [&](std::uint32_t shape) {
-        const ShapeDefinition<D>& s = *shapes[shape].definition;
+        const ShapeDefinition<D>& s = shapes[shape].definition();
         return s.one_way || s.surface_velocity != Vec<D>{};
     };
     c.special = is_special(c.shape_a) || is_special(c.shape_b);
@@ -223,7 +225,7 @@ bool WorldState<D>::are_near(std::uint32_t contact, std::uint32_t shape_a, std::
     if (!a_ground && !company[shape_b].is_ground) return true;
     const ShapeRecord<D>& ground = shapes[a_ground ? shape_a : shape_b];
     const Aabb<D> box = box_in(frame_of(ground.body), widened(fat_boxes[a_ground ? shape_b : shape_a]));
-    return overlaps(box, ground.shape.terrain->facet(contacts[contact].facet).bounds());
+    return overlaps(box, ground.shape().terrain->facet(contacts[contact].facet).bounds());
 }
 
 template <int D>

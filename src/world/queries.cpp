@@ -80,8 +80,8 @@ namespace detail {
 template <int D>
 bool WorldState<D>::is_seen(std::uint32_t shape, const QueryFilter<D>& filter) const {
     const ShapeRecord<D>& s = shapes[shape];
-    const Filter& own = s.definition->filter;
-    if (s.definition->sensor && !filter.sensors) return false;
+    const Filter& own = s.definition().filter;
+    if (s.definition().sensor && !filter.sensors) return false;
     if ((own.category & filter.mask) == 0 || (own.mask & filter.category) == 0) return false;
     if (infos[s.body].disabled || (filter.ignored && filter.ignored.index == s.body)) return false;
     return !filter.accepts || filter.accepts(shape_slots.template id<ShapeId<D>>(shape));
@@ -139,7 +139,7 @@ struct RayQuery {
     std::optional<CastHit<D>> cast(std::uint32_t shape) const {
         if (!world.is_seen(shape, filter)) return std::nullopt;
         const Transform<D> placed = world.placement_of(shape);
-        return detail::cast_ray(world.shapes[shape].shape, apply_inverse(placed, ray.origin),
+        return detail::cast_ray(world.shapes[shape].shape(), apply_inverse(placed, ray.origin),
                                 unrotate(placed.rotation, ray.translation));
     }
     WorldHit<D> named(const Found<D>& found) const {
@@ -171,7 +171,7 @@ struct ShapeQuery {
     std::optional<CastHit<D>> cast(std::uint32_t shape) const {
         if (!world.is_seen(shape, filter)) return std::nullopt;
         const Transform<D> target = world.placement_of(shape);
-        return detail::cast_shape(world.shapes[shape].shape, solid.shape(), relative(target, placed),
+        return detail::cast_shape(world.shapes[shape].shape(), solid.shape(), relative(target, placed),
                                   unrotate(target.rotation, translation));
     }
 };
@@ -268,7 +268,7 @@ std::vector<ShapeId<D>> World<D>::overlapping(const Solid<D>& solid, const Trans
     state_->prepare_trees_for_queries();
     return state_->shapes_in(grown_by_rounding(bounds(solid.shape(), unit)), filter,
                              [&](std::uint32_t shape) {
-                                 return overlap_shapes(state_->shapes[shape].shape, solid.shape(),
+                                 return overlap_shapes(state_->shapes[shape].shape(), solid.shape(),
                                                        relative(state_->placement_of(shape), unit));
                              });
 }
@@ -285,7 +285,7 @@ std::vector<ShapeId<D>> World<D>::in_box(const Aabb<D>& box, const QueryFilter<D
     }
     state_->prepare_trees_for_queries();
     return state_->shapes_in(box, filter, [&](std::uint32_t shape) {
-        return overlaps(bounds(state_->shapes[shape].shape, state_->placement_of(shape)), box);
+        return overlaps(bounds(state_->shapes[shape].shape(), state_->placement_of(shape)), box);
     });
 }
 
@@ -294,7 +294,7 @@ std::vector<ShapeId<D>> World<D>::at_point(const Vec<D>& point, const QueryFilte
     check(point, "point");
     state_->prepare_trees_for_queries();
     return state_->shapes_in(grown_by_rounding(Aabb<D>{point, point}), filter, [&](std::uint32_t shape) {
-        return holds(state_->shapes[shape].shape, apply_inverse(state_->placement_of(shape), point));
+        return holds(state_->shapes[shape].shape(), apply_inverse(state_->placement_of(shape), point));
     });
 }
 
@@ -312,7 +312,7 @@ std::optional<NearestPoint<D>> World<D>::nearest_point(const Vec<D>& point, doub
         if (!w.is_seen(shape, filter)) return limit;
         const Transform<D> placed = w.placement_of(shape);
         const Vec<D> local = apply_inverse(placed, point),
-                     found = detail::nearest_point(w.shapes[shape].shape, local);
+                     found = detail::nearest_point(w.shapes[shape].shape(), local);
         const double distance = length(found - local);
         if (distance > max_distance || distance > least || (distance == least && shape > best)) return limit;
         best = shape;

@@ -99,7 +99,7 @@ bool World<D>::awake(BodyId<D> body) const {
 }
 template <int D>
 std::string_view World<D>::name(BodyId<D> body) const {
-    return state_->infos[state_->index(body)].name;
+    return state_->infos[state_->index(body)].seen().name;
 }
 template <int D>
 std::uint64_t World<D>::user_data(BodyId<D> body) const {
@@ -107,11 +107,12 @@ std::uint64_t World<D>::user_data(BodyId<D> body) const {
 }
 template <int D>
 std::span<const ShapeId<D>> World<D>::shapes(BodyId<D> body) const {
-    return state_->infos[state_->index(body)].shapes;
+    const ShortList<ShapeId<D>>& ids = state_->infos[state_->index(body)].shapes;
+    return {ids.data(), ids.size()};
 }
 template <int D>
 const ShapeDefinition<D>& World<D>::shape(ShapeId<D> shape) const {
-    return *state_->shapes[state_->index(shape)].definition;
+    return state_->shapes[state_->index(shape)].definition();
 }
 template <int D>
 BodyId<D> World<D>::body_of(ShapeId<D> shape) const {
@@ -154,7 +155,7 @@ std::span<const SensorEnd<D>> World<D>::sensor_ends() const {
 template <int D>
 std::vector<ShapeId<D>> World<D>::inside(ShapeId<D> sensor) const {
     const std::uint32_t i = state_->index(sensor);
-    if (!state_->shapes[i].definition->sensor) throw Error("sensor: the shape is not a sensor");
+    if (!state_->shapes[i].definition().sensor) throw Error("sensor: the shape is not a sensor");
     std::vector<ShapeId<D>> result;
     state_->sensor_links.each(i, [&](std::uint32_t k, std::uint32_t) {
         const SensorPair& pair = state_->sensor_pairs[k];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "carom/world.hpp"
@@ -81,7 +82,7 @@ struct SensorPair {
 template <int D>
 struct Blueprint {
     BodyDefinition<D> definition;  ///< without its shapes
-    std::vector<ShapeRecord<D>> shapes;
+    std::vector<std::shared_ptr<const ShapeModel<D>>> shapes;
     BodyMass<D> mass;
     bool made = false;
 

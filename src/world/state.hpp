@@ -11,6 +11,7 @@
 #include "collision/sweep.hpp"
 #include "collision/tree.hpp"
 #include "core/adjacency.hpp"
+#include "core/column.hpp"
 #include "core/crew.hpp"
 #include "core/gathered.hpp"
 #include "core/pair_set.hpp"
@@ -48,7 +49,7 @@ struct WorldState {
     std::vector<BodyMass<D>> masses;
     std::vector<BodyType> types;
     std::vector<BodyInfo<D>> infos;
-    std::vector<Load<D>> applied;           ///< the user's forces for the next step
+    Column<Load<D>> applied;                ///< the user's forces for the next step
     std::vector<std::uint32_t> applied_to;  ///< the bodies that have some, among others
     std::vector<std::uint32_t>
         only_shape;                   ///< index of the shape of a body that has one alone, or `no_shape`
@@ -60,9 +61,9 @@ struct WorldState {
     Slots shape_slots;
     std::vector<ShapeRecord<D>> shapes;
     std::vector<Company> company;        ///< by shape
-    std::vector<Extent<D>> extents;      ///< by shape
+    Column<Extent<D>> extents;           ///< by shape, of those that move
     std::array<Tree<D>, 3> trees;        ///< of shapes, by `TreeKind`
-    std::vector<TreeKind> tree_of;       ///< by body: where its shapes are
+    Column<TreeKind> tree_of;            ///< by body: where its shapes are
     std::vector<OuterBox<D>> fat_boxes;  ///< by shape
     std::vector<OuterBox<D>> met_boxes;  ///< by shape: the fat box of when pairs were last found, or `no_box`
                                          ///< if it is not known to have all pairs of then
@@ -92,12 +93,12 @@ struct WorldState {
 
     PairSet pairs;
     std::vector<ContactRecord<D>> contacts;
-    std::vector<ContactCache<D>> caches;           ///< by contact: where its points were found
-    Adjacency contact_links;                       ///< contacts between `contact_list`s of shapes
-    std::vector<std::uint32_t> loose;              ///< contacts that are looked at one by one, or `nowhere`
-    LaneShapes<D> lane_shapes;                     ///< shapes of contacts that are collided in lanes
-    ApartStore<D> apart;                           ///< contacts that are known not to touch
-    std::vector<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
+    std::vector<ContactCache<D>> caches;      ///< by contact: where its points were found
+    Adjacency contact_links;                  ///< contacts between `contact_list`s of shapes
+    std::vector<std::uint32_t> loose;         ///< contacts that are looked at one by one, or `nowhere`
+    LaneShapes<D> lane_shapes;                ///< shapes of contacts that are collided in lanes
+    ApartStore<D> apart;                      ///< contacts that are known not to touch
+    Column<std::uint32_t> fixed_contacts_of;  ///< by body: how many contacts it has with fixed shapes
     std::vector<SensorPair> sensor_pairs;
     Adjacency sensor_links;                  ///< sensor pairs between shapes
     std::vector<std::uint32_t> placed_anew;  ///< shapes that have sensor pairs which are so
@@ -116,7 +117,7 @@ struct WorldState {
     // Working space of a step.
     std::vector<std::uint32_t> awake;   ///< the awake dynamic bodies and the moving kinematic ones, by index
     std::vector<std::uint32_t> roused;  ///< bodies that may belong to `awake` by now
-    std::vector<std::uint8_t> moving;   ///< by body index: how it moves in this step
+    Column<std::uint8_t> moving;        ///< by body index: how it moves in this step
     bool some_locked = false;           ///< has any body ever had a locked axis?
     std::vector<std::uint32_t> regrouped;         ///< bodies that got their second contact with a fixed shape
     std::vector<std::uint32_t> to_place;          ///< contacts that the solver is to take up
@@ -130,11 +131,11 @@ struct WorldState {
     std::vector<std::uint32_t> path_joints;       ///< those whose place changes with the bodies, by index
     bool joints_are_listed = false;               ///< in these four, as they are now
     std::vector<PairKey> new_pairs;
-    std::vector<Load<D>> loads;
-    std::vector<std::uint8_t> varies;
+    Column<Load<D>> loads;
+    Column<std::uint8_t> varies;
     std::vector<BodyState<D>> before;    ///< states of `awake` at the start of the step
     std::vector<std::uint8_t> outcomes;  ///< by place in `awake`: of this step, bits of `Outcome`
-    std::vector<std::uint32_t> place;    ///< in `awake` and `before`, by body index, of those that are there
+    Column<std::uint32_t> place;         ///< in `awake` and `before`, by body index, of those that are there
     std::vector<FixedContact> fixed_contacts;      ///< of some bodies, by body, shape and fixed shape
     std::vector<ContactRecord<D>> patches_before;  ///< of shapes that have several, in the last step
     std::vector<std::uint32_t> patch_members;      ///< contacts that lie in one plane
@@ -172,7 +173,7 @@ struct WorldState {
     void insert_leaf(std::uint32_t shape);
     void remove_leaf(std::uint32_t shape);
     void set_box(std::uint32_t shape, const Aabb<D>& box);
-    void plant();
+    void plant(Scheduler* workers);
     void refresh_tree();
     void prepare_trees_for_queries();
     void mark_moved(std::uint32_t shape);
@@ -356,6 +357,10 @@ struct WorldState {
     void remove_visits_of(std::uint32_t shape);
     void place_visits_anew(std::uint32_t shape);
 };
+
+/// The box of a shape that comes into a world, on a body whose frame is at `placed`.
+template <int D>
+Aabb<D> first_box(const ShapeModel<D>& model, const Transform<D>& placed);
 
 /// Velocity of a body below which, and way within `time_to_sleep` less than which, it counts as at rest.
 constexpr double sleep_speed = 0.05;   // m/s

@@ -129,7 +129,7 @@ void WorldState<D>::begin_step(double) {
 
     quarantined.clear();
     list_moving();
-    plant();
+    plant(scheduler.get());
 }
 
 /// Brings `awake` up to date. Only who was in it or was roused since can be moving.

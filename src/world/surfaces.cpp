@@ -53,7 +53,7 @@ template <int D>
 void WorldState<D>::lay_on_fixed_face(Manifold<D>& m, const ContactRecord<D>& c,
                                       const Transform<D>& b_in_a) const {
     const bool a_fixed = types[c.body_a] == BodyType::fixed;
-    const Shape<D>& shape = shapes[a_fixed ? c.shape_a : c.shape_b].shape;
+    const Shape<D>& shape = shapes[a_fixed ? c.shape_a : c.shape_b].shape();
     const Transform<D> placed = a_fixed ? Transform<D>{} : b_in_a;
     const double outwards = a_fixed ? 1 : -1;
     const Vec<D> direction = unrotate(placed.rotation, outwards * m.normal);
@@ -105,7 +105,7 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
     const double probe = std::clamp(0.02 * masses[body].radius, 10 * flush, 0.02);
     const auto distance = [&](const FixedContact& other, const Vec<D>& from) {
         const ShapeRecord<D>& s = shapes[other.other];
-        return distance_from<D>(s.shape, other.facet, frame_of(s.body), from);
+        return distance_from<D>(s.shape(), other.facet, frame_of(s.body), from);
     };
     const auto covers = [&](const Vec<D>& at) {
         return std::any_of(first, last, [&](const FixedContact& other) {
@@ -133,7 +133,7 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
 /// How the shape's frame is turned in the world.
 template <int D>
 Rotation<D> WorldState<D>::axes_of(std::uint32_t shape) const {
-    return states[shapes[shape].body].rotation * normalized(shapes[shape].definition->rotation);
+    return states[shapes[shape].body].rotation * normalized(shapes[shape].definition().rotation);
 }
 
 /// A one-way shape lets pass what was not on its open side when it came near, until it has gone.
@@ -142,7 +142,7 @@ void WorldState<D>::pass_one_way(ContactRecord<D>& c, bool was_near) const {
     if (c.count == 0) c.passing = false;
     if (c.count == 0) return;
     const auto blocks = [&](std::uint32_t shape, double towards_other) {
-        const auto& direction = shapes[shape].definition->one_way;
+        const auto& direction = shapes[shape].definition().one_way;
         if (!direction) return true;
         const Vec<D> open = rotate(axes_of(shape), *direction);
         constexpr double least_cosine = 0.1;
@@ -156,7 +156,7 @@ void WorldState<D>::pass_one_way(ContactRecord<D>& c, bool was_near) const {
 template <int D>
 void WorldState<D>::drag_along(ContactRecord<D>& c) const {
     const auto surface = [&](std::uint32_t shape) {
-        return rotate(axes_of(shape), shapes[shape].definition->surface_velocity);
+        return rotate(axes_of(shape), shapes[shape].definition().surface_velocity);
     };
     const Vec<D> normal = narrow<double>(c.normal);
     const Vec<D> relative_velocity = surface(c.shape_b) - surface(c.shape_a);

@@ -30,9 +30,23 @@ void require_place_for(const Shape<D>& shape, BodyType type) {
 }
 
 template <int D>
-void validate_motion(const BodyDefinition<D>& b, const Transform<D>& placed) {
+void validate_place(const Transform<D>& placed) {
     require_finite(placed.position, "position");
     require_unit(placed.rotation, "rotation");
+}
+
+template <int D>
+void validate_places(std::span<const Transform<D>> places) {
+    std::size_t checked = 0;
+    try {
+        for (; checked < places.size(); ++checked) validate_place(places[checked]);
+    } catch (const Error& error) {
+        throw Error("places[" + std::to_string(checked) + "]." + error.what());
+    }
+}
+
+template <int D>
+void validate_motion(const BodyDefinition<D>& b) {
     require_finite(b.velocity, "velocity");
     require_finite(b.angular_velocity, "angular_velocity");
 }
@@ -103,8 +117,12 @@ void validate(const ForceDefinition<D>& f) {
 
 template void require_place_for(const Shape<2>&, BodyType);
 template void require_place_for(const Shape<3>&, BodyType);
-template void validate_motion(const BodyDefinition<2>&, const Transform<2>&);
-template void validate_motion(const BodyDefinition<3>&, const Transform<3>&);
+template void validate_place(const Transform<2>&);
+template void validate_places(std::span<const Transform<2>>);
+template void validate_motion(const BodyDefinition<2>&);
+template void validate_place(const Transform<3>&);
+template void validate_places(std::span<const Transform<3>>);
+template void validate_motion(const BodyDefinition<3>&);
 template void validate(const WorldDefinition<2>&);
 template void validate(const WorldDefinition<3>&);
 template std::vector<Shape<2>> validate(const BodyDefinition<2>&, Scheduler*);

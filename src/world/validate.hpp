@@ -26,9 +26,15 @@ auto within(const std::string& prefix, Work&& work) {
 /// Each throws `Error` that names the field.
 template <int D>
 void validate(const WorldDefinition<D>& definition);
-/// Only how the body moves, and where it is to be.
+/// Only where the body is to be.
 template <int D>
-void validate_motion(const BodyDefinition<D>& definition, const Transform<D>& placed);
+void validate_place(const Transform<D>& placed);
+/// Of each of many; the message says which it is.
+template <int D>
+void validate_places(std::span<const Transform<D>> places);
+/// Only how the body moves.
+template <int D>
+void validate_motion(const BodyDefinition<D>& definition);
 /// All but that. Returns the shapes, made ready.
 template <int D>
 std::vector<Shape<D>> validate(const BodyDefinition<D>& definition, Scheduler* scheduler);
@@ -58,7 +64,7 @@ MassOverrides<D> overrides_of(const BodyDefinition<D>& definition) {
 }
 template <int D>
 MassOverrides<D> overrides_of(const BodyInfo<D>& info) {
-    return info.overrides ? *info.overrides : MassOverrides<D>{};
+    return info.seen().overrides.value_or(MassOverrides<D>{});
 }
 
 }  // namespace carom::detail

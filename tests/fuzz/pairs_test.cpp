@@ -95,8 +95,12 @@ TEST(Fuzz, cases_that_were_wrong_are_right) {
                                   {6, 6, 871},
                                   {6, 6, 4295}})
         EXPECT_EQ(look_at_case<3>(a, b, n).fault, "") << a << ", " << b << ", " << n;
-    for (const std::uint64_t n : {3258u, 5158u, 5383u, 6709u})
+    // Numbers of one case may differ from compiler to compiler; some of these touch the edge of a
+    // facet from behind, to within rounding, by the one or by the other.
+    for (const std::uint64_t n : {3258u, 5158u, 5383u, 6709u, 1070u, 7641u})
         EXPECT_EQ(look_at_ground_case<3>(5, n).fault, "") << "on ground, " << n;
+    for (const std::uint64_t n : {1359u, 4218u, 7547u, 9828u, 9939u, 9957u})
+        EXPECT_EQ(look_at_ground_case<3>(6, n).fault, "") << "on ground, " << n;
 }
 
 TEST(Fuzz, pairs_in_the_plane_agree_with_the_oracles) { look_at_pairs<2>(); }

@@ -234,10 +234,13 @@ Nearest3 triangle_polyhedron(const Triangle& triangle, const Shape<3>& shape, co
 }
 
 /// Cylinder and cone. Where the shortest way out leads backwards, the likely ones that do not are compared.
+/// What only touches an edge from behind, as far as a search can tell, does not overlap, however it was
+/// searched.
 Nearest3 triangle_revolved(const Triangle& triangle, const Shape<3>& shape, const Pair3& pair,
                            const Search3& search) {
     const Nearest3 free = core_revolved(pair, search);
-    if (free.distance > 0 || !triangle.looks_back(free.normal)) return free;
+    const double touching = 1e-7 * std::min(core_extent(pair.a), core_extent(pair.b));
+    if (free.distance > -touching || !triangle.looks_back(free.normal)) return free;
     Widest widest(triangle);
     const auto offer = [&](const Vec3& direction) {
         if (length_squared(direction) <= 1e-12) return;
