@@ -38,9 +38,9 @@ enum class Impacts : std::uint8_t {
 template <int D>
 struct WorldDefinition {
     Vec<D> gravity = [] {
-        Vec<D> g{};
-        g.y = -9.81;
-        return g;
+        Vec<D> downward{};  // no name that a user's own constant may have
+        downward.y = -9.81;
+        return downward;
     }();               ///< m/s²
     int substeps = 4;  ///< 1 … 64 solver passes a step
     Integrator integrator = Integrator::semi_implicit_euler;
@@ -204,8 +204,8 @@ class World {
     AwakeReason<D> awake_reason(BodyId<D> body) const;
     std::string_view name(BodyId<D> body) const;
     std::uint64_t user_data(BodyId<D> body) const;
-    /// The shapes of a body, in the order in which they were added. Like all lists that a world shows, this one
-    /// may be looked at until something is added, removed or stepped.
+    /// The shapes of a body, in the order in which they were added. Like all lists that a world shows, this
+    /// one may be looked at until something is added, removed or stepped.
     std::span<const ShapeId<D>> shapes(BodyId<D> body) const;
     const ShapeDefinition<D>& shape(ShapeId<D> shape) const;
     BodyId<D> body_of(ShapeId<D> shape) const;

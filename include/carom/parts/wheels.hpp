@@ -43,8 +43,11 @@ class RunningGear {
     /// Removes the bodies, and with them the joints.
     void remove(World<D>& world);
 
+    /// The body that all wheels hang on.
     BodyId<D> chassis() const { return chassis_; }
+    /// The bodies of the wheels, in the order of their mounts.
     std::span<const BodyId<D>> wheels() const { return wheels_; }
+    /// Their wheel joints, in the same order.
     std::span<const JointId<D>> joints() const { return joints_; }
 
     /// Of the chassis forward, m/s.
