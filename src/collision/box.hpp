@@ -40,7 +40,7 @@ struct OuterBox {
     friend bool operator==(const OuterBox&, const OuterBox&) = default;
 };
 
-/// A box that holds nothing and overlaps nothing.
+/// A box that holds nothing and overlaps nothing that has an end; see `overlapped`.
 template <int D>
 OuterBox<D> no_box() {
     OuterBox<D> box;

@@ -230,7 +230,7 @@ void Sweep<D>::look(std::span<const std::uint32_t> listed, std::span<const Outer
                         });
     // Those that are kept apart, with one another, and with all others.
     const auto meet = [&](std::uint32_t a, std::uint32_t b, std::vector<Pair>& pairs) {
-        if (overlaps(boxes[a], boxes[b]) && !overlaps(before[a], before[b])) pairs.push_back({a, b});
+        if (overlaps(boxes[a], boxes[b]) && !overlapped(before[a], before[b])) pairs.push_back({a, b});
     };
     const std::size_t wide = wide_.size(), others = wide > 0 ? wide + order_.size() : 0;
     wide_pairs_.look_through(scheduler, others, stretch,

@@ -10,6 +10,13 @@
 
 namespace carom::detail {
 
+/// Did two boxes overlap, either of which may be `no_box`? That has no point in common with a box without
+/// ends either.
+template <int D>
+constexpr bool overlapped(const OuterBox<D>& a, const OuterBox<D>& b) {
+    return overlaps(a, b) && a.lower.x <= a.upper.x && b.lower.x <= b.upper.x;
+}
+
 /// Finds the pairs that begin to overlap among many boxes at once: sorts them along the axis on which they
 /// lie furthest apart and sweeps over them, many at a time (Baraff 1992), within strips across the second
 /// such axis. For a crowd in which most boxes are new this is far cheaper than a question to a tree for each.

@@ -112,7 +112,7 @@ void WorldState<D>::ask_trees(bool crowded) {
                                      // Two that are both new meet once.
                                      const bool here =
                                          shape != other && (!has_new_box[other] || shape < other);
-                                     if (here && !overlaps(met_boxes[shape], met_boxes[other]))
+                                     if (here && !overlapped(met_boxes[shape], met_boxes[other]))
                                          near.push_back({shape, other});
                                  };
                                  if (asks_moving(shape)) trees[of_moving].query(fat_boxes[shape], visit);

@@ -214,5 +214,28 @@ TYPED_TEST(Pairs, AreFoundInTheSameOrderByAnyNumberOfThreads) {
     EXPECT_GT(heaps[0].pairs(), 2000u);
 }
 
+/// Its box is unbounded on all sides.
+TYPED_TEST(Pairs, WithASlantedPlaneAreFoundWheneverBodiesCome) {
+    constexpr int D = TypeParam::value;
+    constexpr double radius = 0.1, slope = 0.3;
+    const Vec<D> normal = vec<D>(-std::sin(slope), std::cos(slope)), along = vec<D>(normal.y, -normal.x);
+    World<D> world;
+    BodyDefinition<D> ground;
+    ground.type = BodyType::fixed;
+    ground.shapes = {shape_of<D>(Plane<D>{normal, 0})};
+    world.add_body(ground);
+    int balls = 0;
+    for (const int more : {3, 2, 100, 1}) {  // a hundred are looked at together
+        for (int i = 0; i < more; ++i, ++balls) {
+            BodyDefinition<D> ball;
+            ball.position = 0.5 * balls * along + radius * normal;
+            ball.shapes = {shape_of<D>(Ball{radius})};
+            world.add_body(ball);
+        }
+        world.step(frame_time);
+        EXPECT_EQ(static_cast<int>(world.counts().contacts), balls);
+    }
+}
+
 }  // namespace
 }  // namespace carom::test
