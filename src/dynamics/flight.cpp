@@ -70,6 +70,7 @@ Rotation3 moved(const Rotation3& q, const Rotation3& rate, double h) {
 /// ω = R I⁻¹ Rᵀ L, by the classical fourth-order Runge–Kutta method in as many parts as keep the turn of each
 /// below 0.1 rad, where its relative energy error is below 1e-9 a part.
 void precess(BodyState<3>& state, const BodyMass<3>& mass, const Vec3& torque, double h) {
+    if (state.angular_velocity == Vec3{} && torque == Vec3{}) return;
     const Rotation3 r = state.rotation;
     Vec3 momentum = turned(r, mass.inertia * turned(inverse(r), state.angular_velocity));
     const double turn_of_step = length(state.angular_velocity) * h;

@@ -103,6 +103,30 @@ std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>
     }
 }
 
+/// Is a ball sure to come nowhere near the facet, which stands still, on its way from `first` to `last`? Its
+/// middle leaves the line between them by no more than `bow`. A facet that is not two-sided meets nothing
+/// whose middle starts behind it.
+template <int D>
+bool passes_by(const Facet<D>& facet, const Vec<D>& first, const Vec<D>& last, double near, double bow) {
+    const double reach = near + bow;
+    bool beside = false;
+    for (int i = 0; i < D; ++i) {
+        double lowest = facet.points[0][i], highest = lowest;
+        for (int k = 1; k < D; ++k) {
+            lowest = std::min(lowest, facet.points[k][i]);
+            highest = std::max(highest, facet.points[k][i]);
+        }
+        beside |=
+            std::min(first[i], last[i]) - reach > highest || std::max(first[i], last[i]) + reach < lowest;
+    }
+    if (beside) return true;
+    const Vec<D> normal = facet.normal();
+    const double at_first = dot(normal, first - facet.points[0]),
+                 at_last = dot(normal, last - facet.points[0]);
+    if (at_first < 0) return !facet.two_sided || std::max(at_first, at_last) < -reach;
+    return std::min(at_first, at_last) > reach;
+}
+
 }  // namespace
 
 /// The contacts with fixed shapes of all bodies that came far in this step, in the order of bodies and
@@ -118,11 +142,12 @@ void WorldState<D>::list_fast_contacts() {
     if (!std::ranges::is_sorted(fast)) std::ranges::sort(fast);
     if (fast.empty()) return;
     for (const std::uint32_t body : fast) {
+        const std::size_t first = fixed_contacts.size();
         each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
         // What came no further than foreseen is still in its box, and all that this meets are its pairs.
         if (outcomes[place[body]] & went_astray) list_strays(body);
+        sort_fixed_contacts(first);
     }
-    sort_fixed_contacts();
 }
 
 /// A blow may throw a body to where its fat box does not reach, past shapes with which it is no pair. Lists
@@ -216,12 +241,22 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     if (length(seen_last - seen_first) <= seen_share * own.core_radius()) return;
 
     const StepMotion<D> sweep(start, states[body]);
-    const Obstacle<D> obstacle{shapes[other].shape(), facet,
-                               StepMotion<D>(earlier(other_body), states[other_body]), masses[other_body]};
+    const double near_core = 1e-3 * own.core_radius();
+    const Shape<D>& others = shapes[other].shape();
+    if (others.kind == ShapeKind::terrain && moving[other_body] == stands_still) {
+        // A point that turns steadily by w at the distance r is within w² r / 8 of the line that it would
+        // follow if it went straight.
+        const double turn = sweep.turn_speed(), bow = 0.125 * turn * turn * length(own.core() - mass.center);
+        if (passes_by(others.terrain->facet(facet), seen_first, seen_last, own.core_radius() + 2 * near_core,
+                      bow))
+            return;
+    }
+    const Obstacle<D> obstacle{others, facet, StepMotion<D>(earlier(other_body), states[other_body]),
+                               masses[other_body]};
     Shape<D> core;
     core.a = own.core();
     core.radius = own.core_radius();
-    const auto passes = first_meeting(core, mass, sweep, obstacle, 1e-3 * own.core_radius());
+    const auto passes = first_meeting(core, mass, sweep, obstacle, near_core);
     if (!passes) return;
     const double near = std::min(0.5 * speculative_distance, 0.2 * own.core_radius());
     const auto meets = first_meeting(own.shape(), mass, sweep, obstacle, near);

@@ -167,7 +167,6 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
 
 template <int D>
 void WorldState<D>::collide(double dt) {
-    list_patches();
     // Those that are found now come straight from the solver; what it knows of them is read side by side.
     const std::size_t first_found = loose.size();
     solver.refresh(states, lane_shapes, static_cast<float>(speculative_distance), scheduler.get(),
@@ -181,6 +180,7 @@ void WorldState<D>::collide(double dt) {
                                     static_cast<float>(0.5 * speculative_distance), static_cast<float>(dt),
                                     static_cast<float>(length(definition.gravity) * dt * dt)};
     for (const std::uint32_t i : apart.find_near(states, lane_shapes, limits, scheduler.get())) loosen(i);
+    list_patches();
     run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             ContactRecord<D>& c = contacts[loose[k]];

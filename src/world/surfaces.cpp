@@ -103,9 +103,16 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
     const Vec<D> n = (a_fixed ? 1.0 : -1.0) * narrow<double>(c.normal);
     const Vec<D> p = mover.position + arm - 0.5 * separation * n;  // on the fixed surface
     const double probe = std::clamp(0.02 * masses[body].radius, 10 * flush, 0.02);
+    // Most often all are facets of one terrain.
+    std::uint32_t placed_body = shapes[own_shape].body;
+    Transform<D> placed = frame_of(placed_body);
     const auto distance = [&](const FixedContact& other, const Vec<D>& from) {
         const ShapeRecord<D>& s = shapes[other.other];
-        return distance_from<D>(s.shape(), other.facet, frame_of(s.body), from);
+        if (s.body != placed_body) {
+            placed_body = s.body;
+            placed = frame_of(placed_body);
+        }
+        return distance_from<D>(s.shape(), other.facet, placed, from);
     };
     const auto covers = [&](const Vec<D>& at) {
         return std::any_of(first, last, [&](const FixedContact& other) {
