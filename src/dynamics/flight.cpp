@@ -120,11 +120,18 @@ Pull<D> pull(const BodyState<D>& state, const BodyMass<D>& mass, const Load<D>& 
 template <int D>
 void semi_implicit_euler(const Flight<D>& f, std::span<const std::uint32_t> bodies) {
     const double h = f.step;
+    // Most bodies decay like the one before.
+    double damping = 0;
+    Decay known(damping, h);
+    const auto decay = [&](double wanted) {
+        if (wanted != damping) known = Decay(damping = wanted, h);
+        return known;
+    };
     for (const std::uint32_t i : bodies) {
         BodyState<D>& s = f.states[i];
         const BodyMass<D>& m = f.masses[i];
         const Pull<D> a = pull(s, m, f.loads[i]);
-        const Decay linear(m.linear_damping, h), angular(m.angular_damping, h);
+        const Decay linear = decay(m.linear_damping), angular = decay(m.angular_damping);
         // Where the load is constant the motion has a closed form; elsewhere x += h v(new) is symplectic.
         const auto advance = [&](auto& v, const auto& acc, const Decay& d) {
             const auto before = v;

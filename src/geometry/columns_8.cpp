@@ -23,28 +23,51 @@ inline void products_of(const double* block, const Direction& v, Four& result) {
     result = x * v.x + y * v.y + z * v.z;
 }
 
+/// In each of the four places of a block its own furthest of every other block, and which block it is in.
+struct Highest {
+    Four height;
+    Index block;
+
+    void begin(const double* blocks, const Direction& v, long long at) {
+        products_of(blocks + 12 * at, v, height);
+        block = Index{at, at, at, at};
+    }
+    void look(const double* blocks, const Direction& v, long long at) {
+        Four now;
+        products_of(blocks + 12 * at, v, now);
+        const Index higher = now > height;
+        height = higher ? now : height;
+        block = higher ? Index{at, at, at, at} : block;
+    }
+};
+
 std::size_t furthest(const double* blocks, std::size_t count, const double* direction) {
     const Direction v(direction);
-    // In each of the four places of a block its own furthest, and the block that it is in.
-    Four highest, now;
-    Index at = {};
-    products_of(blocks, v, highest);
-    for (std::size_t i = 1; i < count; ++i) {
-        products_of(blocks + 12 * i, v, now);
-        const long long here = static_cast<long long>(i);
-        const Index higher = now > highest;
-        highest = higher ? now : highest;
-        at = higher ? Index{here, here, here, here} : at;
+    const auto end = static_cast<long long>(count);
+    // Two, so that one need not wait for the other.
+    Highest even, odd;
+    even.begin(blocks, v, 0);
+    odd.begin(blocks, v, end > 1 ? 1 : 0);
+    long long i = 2;
+    for (; i + 1 < end; i += 2) {
+        even.look(blocks, v, i);
+        odd.look(blocks, v, i + 1);
     }
-    std::size_t best = 4 * std::size_t(at[0]);
-    double reached = highest[0];
-    for (std::size_t place = 1; place < 4; ++place) {
-        const std::size_t index = 4 * std::size_t(at[place]) + place;
-        if (highest[place] < reached || (highest[place] == reached && index > best)) continue;
-        reached = highest[place];
-        best = index;
+    if (i < end) even.look(blocks, v, i);
+    // Of equal ones the first; nobody could tell which it is, so nothing branches.
+    double reached = even.height[0];
+    for (int place = 0; place < 4; ++place) {
+        reached = even.height[place] > reached ? even.height[place] : reached;
+        reached = odd.height[place] > reached ? odd.height[place] : reached;
     }
-    return best;
+    long long best = 4 * end;
+    for (int place = 0; place < 4; ++place) {
+        const long long of_even = even.height[place] == reached ? 4 * even.block[place] + place : best;
+        best = of_even < best ? of_even : best;
+        const long long of_odd = odd.height[place] == reached ? 4 * odd.block[place] + place : best;
+        best = of_odd < best ? of_odd : best;
+    }
+    return static_cast<std::size_t>(best);
 }
 
 void products(const double* blocks, std::size_t count, const double* v, double* result) {

@@ -37,18 +37,27 @@ FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transf
         if (heights[faces[i]] > heights[faces[highest]]) highest = i;
     }
     std::swap(faces[0], faces[highest]);
+    std::array<Vec3, 8> corners;  // the last of those that were the lowest over some face
+    std::size_t found = 0;
     for (std::size_t i = 0; i < count && best.gap <= limit; ++i) {
         const std::size_t f = faces[i];
+        const Vec3& outwards = a.normals[f];
         const auto is_no_better = [&](double gap) {
             return gap < best.gap || (gap == best.gap && (best.face == none || f > best.face));
         };
+        const auto is_below = [&](const Vec3& corner) {
+            return is_no_better(dot(outwards, corner) - a.offsets[f]);
+        };
         if (is_no_better(heights[f])) continue;
-        if (best.face != none && is_no_better(dot(a.normals[f], best.corner) - a.offsets[f])) continue;
-        const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
+        if (std::any_of(corners.begin(), corners.begin() + std::min(found, corners.size()), is_below))
+            continue;
+        const Vec3 normal = unrotate(b_in_a.rotation, outwards);
         const Vec3& lowest = b.vertices[furthest_corner(b, -normal)];
-        const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
+        const double base = dot(outwards, b_in_a.position) - a.offsets[f];
         const double gap = base + dot(normal, lowest);
-        if (!is_no_better(gap)) best = {gap, apply(b_in_a, lowest), f};
+        const Vec3 corner = apply(b_in_a, lowest);
+        if (!is_no_better(gap)) best = {gap, corner, f};
+        corners[found++ % corners.size()] = corner;
     }
     return best;
 }
