@@ -25,13 +25,15 @@ struct FaceGap {
 
 /// Looks for a wider gap than `best` has along the normals of a's faces, b's corners being placed in a's
 /// frame by `b_in_a`. No gap is more than the height of any of b's points over the face (`heights` are those
-/// of the first `best.corner`), which spares most faces the look at all of b's corners, since the best one's
-/// is where b is nearest to a or deepest in it. The face over which it is highest is looked at first: no
-/// other is likely to show a wider gap. Of equal ones the first counts.
+/// of the first `best.corner`), which spares most faces the look at all of b's corners. The face over which
+/// it is highest is looked at first: no other is likely to show a wider gap. Of equal ones the first counts;
+/// heights are trusted but for rounding, so that the order makes no difference.
 FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a,
                           const Heights3& heights, FaceGap best, double limit, Memory3& memory) {
+    const double rounding =
+        1e-13 * (length(b_in_a.position) + length(a.middle) + a.extent + length(b.middle) + b.extent);
     std::pmr::vector<std::uint32_t> faces(a.normals.size(), &memory.resource);
-    const std::size_t count = heights.list_above(best.gap, a.normals.size(), faces.data());
+    const std::size_t count = heights.list_above(best.gap - rounding, a.normals.size(), faces.data());
     std::size_t highest = 0;
     for (std::size_t i = 1; i < count; ++i) {
         if (heights[faces[i]] > heights[faces[highest]]) highest = i;
@@ -42,13 +44,11 @@ FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transf
     for (std::size_t i = 0; i < count && best.gap <= limit; ++i) {
         const std::size_t f = faces[i];
         const Vec3& outwards = a.normals[f];
-        const auto is_no_better = [&](double gap) {
-            return gap < best.gap || (gap == best.gap && (best.face == none || f > best.face));
-        };
+        const double needed = best.gap - rounding;
         const auto is_below = [&](const Vec3& corner) {
-            return is_no_better(dot(outwards, corner) - a.offsets[f]);
+            return dot(outwards, corner) - a.offsets[f] < needed;
         };
-        if (is_no_better(heights[f])) continue;
+        if (heights[f] < needed) continue;
         if (std::any_of(corners.begin(), corners.begin() + std::min(found, corners.size()), is_below))
             continue;
         const Vec3 normal = unrotate(b_in_a.rotation, outwards);
@@ -56,8 +56,9 @@ FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transf
         const double base = dot(outwards, b_in_a.position) - a.offsets[f];
         const double gap = base + dot(normal, lowest);
         const Vec3 corner = apply(b_in_a, lowest);
-        if (!is_no_better(gap)) best = {gap, corner, f};
         corners[found++ % corners.size()] = corner;
+        if (gap > best.gap || (gap == best.gap && best.face != none && f < best.face))
+            best = {gap, corner, f};
     }
     return best;
 }
