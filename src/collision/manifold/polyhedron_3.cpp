@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 #include "collision/manifold/heights_3.hpp"
@@ -23,13 +24,24 @@ struct FaceGap {
     std::size_t face = none;
 };
 
+/// Corners of a polyhedron that are nearest to another one or deepest in it, each over some face.
+struct NearCorners {
+    static constexpr std::size_t most = 6;
+    std::array<Vec3, most> places;
+    std::size_t found = 0;  ///< if there were more than room for, the last ones are kept
+
+    void add(const Vec3& corner) { places[found++ % most] = corner; }
+    std::span<const Vec3> all() const { return std::span(places).first(std::min(found, most)); }
+};
+
 /// Looks for a wider gap than `best` has along the normals of a's faces, b's corners being placed in a's
 /// frame by `b_in_a`. No gap is more than the height of any of b's points over the face (`heights` are those
 /// of the first `best.corner`), which spares most faces the look at all of b's corners. The face over which
 /// it is highest is looked at first: no other is likely to show a wider gap. Of equal ones the first counts;
 /// heights are trusted but for rounding, so that the order makes no difference.
 FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a,
-                          const Heights3& heights, FaceGap best, double limit, Memory3& memory) {
+                          const Heights3& heights, FaceGap best, double limit, NearCorners& corners,
+                          Memory3& memory) {
     const double rounding =
         1e-13 * (length(b_in_a.position) + length(a.middle) + a.extent + length(b.middle) + b.extent);
     std::pmr::vector<std::uint32_t> faces(a.normals.size(), &memory.resource);
@@ -39,8 +51,6 @@ FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transf
         if (heights[faces[i]] > heights[faces[highest]]) highest = i;
     }
     std::swap(faces[0], faces[highest]);
-    std::array<Vec3, 8> corners;  // the last of those that were the lowest over some face
-    std::size_t found = 0;
     for (std::size_t i = 0; i < count && best.gap <= limit; ++i) {
         const std::size_t f = faces[i];
         const Vec3& outwards = a.normals[f];
@@ -49,14 +59,13 @@ FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transf
             return dot(outwards, corner) - a.offsets[f] < needed;
         };
         if (heights[f] < needed) continue;
-        if (std::any_of(corners.begin(), corners.begin() + std::min(found, corners.size()), is_below))
-            continue;
+        if (std::ranges::any_of(corners.all(), is_below)) continue;
         const Vec3 normal = unrotate(b_in_a.rotation, outwards);
         const Vec3& lowest = b.vertices[furthest_corner(b, -normal)];
         const double base = dot(outwards, b_in_a.position) - a.offsets[f];
         const double gap = base + dot(normal, lowest);
         const Vec3 corner = apply(b_in_a, lowest);
-        corners[found++ % corners.size()] = corner;
+        corners.add(corner);
         if (gap > best.gap || (gap == best.gap && best.face != none && f < best.face))
             best = {gap, corner, f};
     }
@@ -94,22 +103,28 @@ struct StaysHere {
     static const Vec3& point(const Vec3& v) { return v; }
 };
 
-/// The edges, carried along, that can part the polyhedron by more than `gap` from another one, which has two
-/// points at these heights over the faces.
+/// The edges, carried along, that can part the polyhedron by more than `gap` from another one, of which a
+/// point has these heights over the faces and `corners` are some. Each corner spares far more pairs of edges
+/// than it costs.
 template <class Carry>
-Arcs find_arcs(const Polyhedron& core, const Carry& carry, const Heights3& of_first,
-               const Heights3& of_second, double gap, Memory3& memory) {
+Arcs find_arcs(const Polyhedron& core, const Carry& carry, const Heights3& heights,
+               const NearCorners& corners, double gap, Memory3& memory) {
     const double needed = std::min(gap, 0.0) - core.unevenness;
-    std::pmr::vector<std::uint8_t> seen(core.normals.size(), &memory.resource);
-    for (std::size_t f = 0; f < seen.size(); ++f) {
-        seen[f] =
-            static_cast<std::uint8_t>((of_first[f] >= needed ? 1 : 0) | (of_second[f] >= needed ? 2 : 0));
-    }
+    std::pmr::vector<std::uint8_t> seen(core.normals.size(), &memory.resource);  // a bit a point
+    std::uint8_t all = 0;
+    const auto look_from = [&](const Heights3& over) {
+        const int bit = all + 1;
+        for (std::size_t f = 0; f < seen.size(); ++f)
+            seen[f] = static_cast<std::uint8_t>(seen[f] | (over[f] >= needed ? bit : 0));
+        all = static_cast<std::uint8_t>(all | bit);
+    };
+    look_from(heights);
+    for (const Vec3& corner : corners.all()) look_from(Heights3(core, corner, memory));
     std::pmr::vector<const Polyhedron::Edge*> kept(core.edges.size(), &memory.resource);
     std::size_t count = 0;
     for (const Polyhedron::Edge& edge : core.edges) {
         kept[count] = &edge;
-        count += (seen[edge.left] | seen[edge.right]) == 3;
+        count += (seen[edge.left] | seen[edge.right]) == all;
     }
     Arcs arcs(count, &memory.resource);
     for (std::size_t i = 0; i < count; ++i) {
@@ -186,11 +201,14 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
 
     Memory3 memory;
     const Heights3 over_a(a, start.on_b, memory);
-    const FaceGap of_a = widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit, memory);
+    NearCorners of_b_near_a, of_a_near_b;
+    const FaceGap of_a =
+        widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit, of_b_near_a, memory);
     if (of_a.gap > search.limit) return at_face(a, of_a);
     const Vec3 near_a = apply(a_in_b, start.on_a);
     const Heights3 over_b(b, near_a, memory);
-    const FaceGap of_b = widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit, memory);
+    const FaceGap of_b =
+        widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit, of_a_near_b, memory);
     if (of_b.gap > search.limit) return exchanged(at_face(b, of_b), b_in_a);
 
     // A face of a is favoured if no other gap is wider by more than the advantage, or else a face of b.
@@ -200,14 +218,11 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     const double up_to_a = favoured_up_to(of_a), up_to_b = favoured_up_to(of_b);
     const bool a_leads = up_to_a >= of_b.gap;
     const double needed = std::max(of_b.gap, a_leads ? up_to_a : up_to_b);
-    const Heights3 also_over_a(a, of_a.corner, memory);
-    const Arcs arcs_a = find_arcs(a, StaysHere{}, over_a, also_over_a, needed, memory);
+    const Arcs arcs_a = find_arcs(a, StaysHere{}, over_a, of_b_near_a, needed, memory);
     Nearest3 of_edges = nothing;
-    if (!arcs_a.empty()) {
-        const Heights3 also_over_b(b, of_b.corner, memory);
+    if (!arcs_a.empty())
         of_edges =
-            widest_over_edges(arcs_a, find_arcs(b, Carrier(b_in_a), over_b, also_over_b, needed, memory));
-    }
+            widest_over_edges(arcs_a, find_arcs(b, Carrier(b_in_a), over_b, of_a_near_b, needed, memory));
     if (a_leads && up_to_a >= of_edges.distance) return at_face(a, of_a);
     return up_to_b >= of_edges.distance ? exchanged(at_face(b, of_b), b_in_a) : of_edges;
 }
