@@ -21,7 +21,7 @@ Manifold<3> collide(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_
     return *contact_patch(pair, found, reach);
 }
 
-/// The same where it takes longer to find the axis than to try one.
+/// The same where it takes longer to find the axis than to try one, which two polyhedra do first themselves.
 template <NearestRoutine3 nearest>
 Manifold<3> collide_unless_apart(const Shape<3>& a, const Shape<3>& b, const Transform<3>& b_in_a,
                                  double reach, const Vec3& axis) {
@@ -53,8 +53,9 @@ template <NearestRoutine3 nearest>
 constexpr PairRoutines<3> by{collide<nearest>, separate<nearest>};
 template <NearestRoutine3 nearest>
 constexpr PairRoutines<3> slow{collide_unless_apart<nearest>, separate<nearest>};
-template <NearestRoutine3 nearest>
-constexpr PairRoutines<3> polyhedra{collide_unless_apart<nearest>, separate_polyhedra<nearest>};
+constexpr PairRoutines<3> polyhedra{collide<polyhedron_polyhedron>,
+                                    separate_polyhedra<polyhedron_polyhedron>};
+constexpr PairRoutines<3> boxes{collide_unless_apart<box_box>, separate_polyhedra<box_box>};
 constexpr PairRoutines<3> ground{collide_terrain<3>, separate_from_terrain<3>};
 constexpr PairRoutines<3> none{};  // two of plane and terrain
 constexpr PairRoutines<3> flip{};  // looked up with the shapes exchanged
@@ -64,8 +65,8 @@ constexpr PairRoutines<3> matrix[8][8] = {
 // a \ b       ball             capsule              box                       hull                              cylinder              cone                  plane           terrain
 /* ball */     {by<point_point>, by<point_segment>,   by<point_box>,            by<point_polyhedron>,             by<point_revolved>,   by<point_revolved>,   by<core_plane>, ground},
 /* capsule */  {flip,            by<segment_segment>, slow<segment_polyhedron>, slow<segment_polyhedron>,         slow<core_revolved>,  slow<core_revolved>,  by<core_plane>, ground},
-/* box */      {flip,            flip,                polyhedra<box_box>,       polyhedra<polyhedron_polyhedron>, slow<core_revolved>,  slow<core_revolved>,  by<core_plane>, ground},
-/* hull */     {flip,            flip,                flip,                     polyhedra<polyhedron_polyhedron>, slow<core_revolved>,  slow<core_revolved>,  by<core_plane>, ground},
+/* box */      {flip,            flip,                boxes,                    polyhedra,                        slow<core_revolved>,  slow<core_revolved>,  by<core_plane>, ground},
+/* hull */     {flip,            flip,                flip,                     polyhedra,                        slow<core_revolved>,  slow<core_revolved>,  by<core_plane>, ground},
 /* cylinder */ {flip,            flip,                flip,                     flip,                             slow<core_revolved>,  slow<core_revolved>,  by<core_plane>, ground},
 /* cone */     {flip,            flip,                flip,                     flip,                             flip,                 slow<core_revolved>,  by<core_plane>, ground},
 /* plane */    {flip,            flip,                flip,                     flip,                             flip,                 flip,                 none,           none},

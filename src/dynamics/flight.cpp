@@ -70,6 +70,7 @@ Rotation3 moved(const Rotation3& q, const Rotation3& rate, double h) {
 /// ω = R I⁻¹ Rᵀ L, by the classical fourth-order Runge–Kutta method in as many parts as keep the turn of each
 /// below 0.1 rad, where its relative energy error is below 1e-9 a part.
 void precess(BodyState<3>& state, const BodyMass<3>& mass, const Vec3& torque, double h) {
+    if (state.angular_velocity == Vec3{} && torque == Vec3{}) return;
     const Rotation3 r = state.rotation;
     Vec3 momentum = turned(r, mass.inertia * turned(inverse(r), state.angular_velocity));
     const double turn_of_step = length(state.angular_velocity) * h;
@@ -119,11 +120,18 @@ Pull<D> pull(const BodyState<D>& state, const BodyMass<D>& mass, const Load<D>& 
 template <int D>
 void semi_implicit_euler(const Flight<D>& f, std::span<const std::uint32_t> bodies) {
     const double h = f.step;
+    // Most bodies decay like the one before.
+    double damping = 0;
+    Decay known(damping, h);
+    const auto decay = [&](double wanted) {
+        if (wanted != damping) known = Decay(damping = wanted, h);
+        return known;
+    };
     for (const std::uint32_t i : bodies) {
         BodyState<D>& s = f.states[i];
         const BodyMass<D>& m = f.masses[i];
         const Pull<D> a = pull(s, m, f.loads[i]);
-        const Decay linear(m.linear_damping, h), angular(m.angular_damping, h);
+        const Decay linear = decay(m.linear_damping), angular = decay(m.angular_damping);
         // Where the load is constant the motion has a closed form; elsewhere x += h v(new) is symplectic.
         const auto advance = [&](auto& v, const auto& acc, const Decay& d) {
             const auto before = v;

@@ -3,7 +3,27 @@
 #include <algorithm>
 #include <cstring>
 
+#include "geometry/columns_in_lanes.hpp"
+#include "simd/width.hpp"
+
 namespace carom::detail {
+
+namespace {
+
+/// What does the work in place of the loops below, or null.
+const ColumnsKernel* kernel() {
+#ifdef CAROM_WIDE_LANES
+    if (lane_width() >= 8) return &columns_kernel_8;
+#endif
+    return nullptr;
+}
+
+template <class Blocks>
+const double* doubles(const Blocks& blocks) {
+    return reinterpret_cast<const double*>(blocks.data());
+}
+
+}  // namespace
 
 Columns::Columns(const std::vector<Vec3>& list) : blocks_((list.size() + 3) / 4) {
     for (std::size_t i = 0; i < 4 * blocks_.size(); ++i) {
@@ -16,6 +36,7 @@ Columns::Columns(const std::vector<Vec3>& list) : blocks_((list.size() + 3) / 4)
 }
 
 std::size_t Columns::furthest(const Vec3& direction) const {
+    if (const auto* wide = kernel()) return wide->furthest(doubles(blocks_), blocks_.size(), &direction.x);
     // In each of the four places of a block its own furthest, and the block that it is in.
     Two highest[2], now[2];
     using Index [[gnu::vector_size(16)]] = long long;
@@ -43,6 +64,7 @@ std::size_t Columns::furthest(const Vec3& direction) const {
 }
 
 void Columns::products(const Vec3& v, double* result) const {
+    if (const auto* wide = kernel()) return wide->products(doubles(blocks_), blocks_.size(), &v.x, result);
     for (const Block& block : blocks_) {
         Two now[2];
         products(block, v, now);
@@ -52,6 +74,11 @@ void Columns::products(const Vec3& v, double* result) const {
 }
 
 std::array<double, 2> Columns::range(const Vec3& direction) const {
+    if (const auto* wide = kernel()) {
+        std::array<double, 2> result;
+        wide->range(doubles(blocks_), blocks_.size(), &direction.x, result.data());
+        return result;
+    }
     Two lowest[2], highest[2], now[2];
     products(blocks_[0], direction, lowest);
     for (int k = 0; k < 2; ++k) highest[k] = lowest[k];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -88,12 +89,16 @@ std::uint32_t FacetTree<D>::overlapped(const Node& node, const Aabb<D>& box) {
         low[i] = std::uint8_t(std::max(std::ceil(from), 0.0));
         high[i] = std::uint8_t(std::min(to, 254.0));
     }
-    Lanes hit;
-    for (int k = 0; k < width; ++k) hit[k] = node.lower[0][k] <= high[0] && node.upper[0][k] >= low[0];
-    for (int i = 1; i < D; ++i)
-        for (int k = 0; k < width; ++k) hit[k] &= node.lower[i][k] <= high[i] && node.upper[i][k] >= low[i];
-    std::uint32_t bits = 0;
-    for (int k = 0; k < width; ++k) bits |= std::uint32_t(hit[k]) << k;
+    using Eight [[gnu::vector_size(8)]] = std::uint8_t;
+    static_assert(width == sizeof(Eight) && std::endian::native == std::endian::little);
+    Eight beside{};
+    for (int i = 0; i < D; ++i) {
+        const auto lower = std::bit_cast<Eight>(node.lower[i]), upper = std::bit_cast<Eight>(node.upper[i]);
+        beside |= Eight(lower > high[i]) | Eight(upper < low[i]);
+    }
+    // The lowest bit of each byte comes to the highest byte, the first byte's lowest.
+    const std::uint64_t hit = ~std::bit_cast<std::uint64_t>(beside) & 0x0101010101010101u;
+    const auto bits = static_cast<std::uint32_t>((hit * 0x0102040810204080u) >> 56);
     return bits;
 }
 

@@ -36,12 +36,15 @@ void WorldState<D>::add_contact(const PairKey& key) {
     if (!stays_apart(contact)) loosen(contact);
 }
 
-/// A body that has several contacts with fixed shapes may lie on one surface that they make up, so that they
-/// have to be looked at together.
+/// A body that has several contacts with fixed shapes may lie on one surface that they make up, so that those
+/// that have points have to be looked at together.
 template <int D>
 void WorldState<D>::part_from_others() {
-    for (const std::uint32_t body : regrouped)
-        each_contact_of(body, true, [&](std::uint32_t contact) { stop_carrying(contact); });
+    for (const std::uint32_t body : regrouped) {
+        each_contact_of(body, true, [&](std::uint32_t contact) {
+            if (contacts[contact].apart == ContactRecord<D>::nowhere) stop_carrying(contact);
+        });
+    }
 }
 
 template <int D>
@@ -218,14 +221,13 @@ LanePair<D> WorldState<D>::lane_pair(const ContactRecord<D>& c) {
 }
 
 /// If nothing has to be known of the contact until its bodies have come nearer, it is put with those that are
-/// apart. It must be known what holds the shapes apart, or lanes find that out. Where several fixed shapes
-/// may be one surface, each counts.
+/// apart. It must be known what holds the shapes apart, or lanes find that out.
 template <int D>
 bool WorldState<D>::stays_apart(std::uint32_t contact) {
     ContactRecord<D>& c = contacts[contact];
     if (!definition.continuous || c.count > 0 || c.touching || c.merged || c.special || may_be_struck(c))
         return false;
-    if (!(masses[c.body_b].radius > 0) || (c.on_fixed && fixed_contacts_of[mover(c)] != 1)) return false;
+    if (!(masses[c.body_b].radius > 0)) return false;
     const LanePair<D> pair = lane_pair(c);
     if (!pair && !caches[contact].tells_of_gap()) return false;
     c.apart = apart.add(contact, c.body_a, c.body_b, caches[contact], masses[c.body_a].radius,

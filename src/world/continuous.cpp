@@ -15,6 +15,7 @@ namespace {
 /// Where a body will be after `time` seconds if only gravity acts on it.
 template <int D>
 BodyState<D> coasted(BodyState<D> s, const BodyMass<D>& m, const Vec<D>& gravity, double time) {
+    if (m.inverse_mass == 0 && s.velocity == Vec<D>{} && s.angular_velocity == Angular<D>{}) return s;
     s.position += time * s.velocity;
     if (m.inverse_mass > 0) s.position += (0.5 * time * time * m.gravity_scale) * gravity;
     turn<D>(s, s.angular_velocity * time);
@@ -103,6 +104,30 @@ std::optional<Meeting<D>> first_meeting(const Shape<D>& shape, const BodyMass<D>
     }
 }
 
+/// Is a ball sure to come nowhere near the facet, which stands still, on its way from `first` to `last`? Its
+/// middle leaves the line between them by no more than `bow`. A facet that is not two-sided meets nothing
+/// whose middle starts behind it.
+template <int D>
+bool passes_by(const Facet<D>& facet, const Vec<D>& first, const Vec<D>& last, double near, double bow) {
+    const double reach = near + bow;
+    bool beside = false;
+    for (int i = 0; i < D; ++i) {
+        double lowest = facet.points[0][i], highest = lowest;
+        for (int k = 1; k < D; ++k) {
+            lowest = std::min(lowest, facet.points[k][i]);
+            highest = std::max(highest, facet.points[k][i]);
+        }
+        beside |=
+            std::min(first[i], last[i]) - reach > highest || std::max(first[i], last[i]) + reach < lowest;
+    }
+    if (beside) return true;
+    const Vec<D> normal = facet.normal();
+    const double at_first = dot(normal, first - facet.points[0]),
+                 at_last = dot(normal, last - facet.points[0]);
+    if (at_first < 0) return !facet.two_sided || std::max(at_first, at_last) < -reach;
+    return std::min(at_first, at_last) > reach;
+}
+
 }  // namespace
 
 /// The contacts with fixed shapes of all bodies that came far in this step, in the order of bodies and
@@ -118,11 +143,12 @@ void WorldState<D>::list_fast_contacts() {
     if (!std::ranges::is_sorted(fast)) std::ranges::sort(fast);
     if (fast.empty()) return;
     for (const std::uint32_t body : fast) {
+        const std::size_t first = fixed_contacts.size();
         each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
         // What came no further than foreseen is still in its box, and all that this meets are its pairs.
         if (outcomes[place[body]] & went_astray) list_strays(body);
+        sort_fixed_contacts(first);
     }
-    sort_fixed_contacts();
 }
 
 /// A blow may throw a body to where its fat box does not reach, past shapes with which it is no pair. Lists
@@ -142,11 +168,14 @@ void WorldState<D>::list_strays(std::uint32_t body) {
             }
             return box;
         };
+        // Within the fat box all that it may meet are its pairs.
+        const Aabb<D> way = way_in({});
+        if (contains(fat_boxes[id.index], way)) continue;
         const auto add = [&](std::uint32_t other, std::uint32_t facet) {
             if (!pairs.contains(PairKey::of(id.index, other, facet)))
                 fixed_contacts.push_back({body, id.index, other, facet, ContactRecord<D>::nowhere});
         };
-        trees[of_fixed].query(OuterBox<D>(way_in({})), [&](std::uint32_t other) {
+        trees[of_fixed].query(OuterBox<D>(way), [&](std::uint32_t other) {
             const ShapeRecord<D>& obstacle = shapes[other];
             const bool blocks = !company[id.index].senses && !company[other].senses &&
                                 !obstacle.definition().one_way && may_meet(id.index, other);
@@ -210,18 +239,30 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
     const Vec<D> first = apply(frame(start, mass), own.core());
     const Vec<D> last = apply(frame_of(body), own.core());
     const std::uint32_t other_body = shapes[other].body;
+    const bool stands = moving[other_body] == stands_still;
     // How far the core came as seen from the obstacle.
-    const Vec<D> seen_first = apply_inverse(frame(earlier(other_body), masses[other_body]), first);
-    const Vec<D> seen_last = apply_inverse(frame_of(other_body), last);
+    const Transform<D> now = frame_of(other_body),
+                       before_step = stands ? now : frame(earlier(other_body), masses[other_body]);
+    const Vec<D> seen_first = apply_inverse(before_step, first), seen_last = apply_inverse(now, last);
     if (length(seen_last - seen_first) <= seen_share * own.core_radius()) return;
 
     const StepMotion<D> sweep(start, states[body]);
-    const Obstacle<D> obstacle{shapes[other].shape(), facet,
-                               StepMotion<D>(earlier(other_body), states[other_body]), masses[other_body]};
+    const double near_core = 1e-3 * own.core_radius();
+    const Shape<D>& others = shapes[other].shape();
+    if (stands && others.kind == ShapeKind::terrain) {
+        // A point that turns steadily by w at the distance r is within w² r / 8 of the line that it would
+        // follow if it went straight.
+        const double turn = sweep.turn_speed(), bow = 0.125 * turn * turn * length(own.core() - mass.center);
+        if (passes_by(others.terrain->facet(facet), seen_first, seen_last, own.core_radius() + 2 * near_core,
+                      bow))
+            return;
+    }
+    const Obstacle<D> obstacle{others, facet, StepMotion<D>(earlier(other_body), states[other_body]),
+                               masses[other_body]};
     Shape<D> core;
     core.a = own.core();
     core.radius = own.core_radius();
-    const auto passes = first_meeting(core, mass, sweep, obstacle, 1e-3 * own.core_radius());
+    const auto passes = first_meeting(core, mass, sweep, obstacle, near_core);
     if (!passes) return;
     const double near = std::min(0.5 * speculative_distance, 0.2 * own.core_radius());
     const auto meets = first_meeting(own.shape(), mass, sweep, obstacle, near);
@@ -234,8 +275,7 @@ void WorldState<D>::stop_at(std::uint32_t body, std::uint32_t shape, std::uint32
         return;
     }
     // It touched from the start, so there is no going back: it turns as it did, and its core stays outside.
-    const Transform<D> then = frame(obstacle.sweep.at(passes->share), obstacle.mass),
-                       now = frame_of(other_body);
+    const Transform<D> then = frame(obstacle.sweep.at(passes->share), obstacle.mass);
     const auto carried = [&](const Vec<D>& v) { return rotate(now.rotation, unrotate(then.rotation, v)); };
     const Vec<D> there = apply(frame(sweep.at(passes->share), mass), own.core());
     const Vec<D> axis = carried(passes->axis);
@@ -266,11 +306,18 @@ void WorldState<D>::meet_ahead(ContactRecord<D>& c, const ContactCache<D>& cache
     const double least_gap = cache.least_gap(RelativePose<D>(sa, sb), mb.radius);
     if (least_gap - 0.5 * near > dt * (turning - dot(rotate(sa.rotation, axis), speed))) return;
     for (int i = 0; i < most_advances; ++i) {
-        a = coasted(sa, ma, definition.gravity, elapsed);
-        b = coasted(sb, mb, definition.gravity, elapsed);
-        const Transform<D> b_in_a = relative(frame(a, ma), frame(b, mb));
+        // At the start the bound may do.
+        Transform<D> b_in_a;
+        double distance = least_gap;
+        if (i > 0 || distance <= near) {
+            if (i > 0) {
+                a = coasted(sa, ma, definition.gravity, elapsed);
+                b = coasted(sb, mb, definition.gravity, elapsed);
+            }
+            b_in_a = relative(frame(a, ma), frame(b, mb));
+            distance = least_gap_between<D>(shape_a, shape_b, c.facet, b_in_a, axis);
+        }
         const bool last = i + 1 == most_advances;
-        double distance = least_gap_between<D>(shape_a, shape_b, c.facet, b_in_a, axis);
         if (distance <= near || last) {
             const auto gap = gap_between<D>(shape_a, shape_b, c.facet, b_in_a);
             if (!gap) return;

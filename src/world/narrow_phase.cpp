@@ -165,9 +165,20 @@ void WorldState<D>::update_contact(ContactRecord<D>& c, ContactCache<D>& cache, 
     c.merged = false;
 }
 
+namespace {
+
+/// Asks for all that the object is made of to be brought near.
+template <class T>
+void fetch_ahead(const T& object) {
+    constexpr std::size_t line = 64;
+    for (std::size_t i = 0; i < sizeof object; i += line)
+        __builtin_prefetch(reinterpret_cast<const char*>(&object) + i);
+}
+
+}  // namespace
+
 template <int D>
 void WorldState<D>::collide(double dt) {
-    list_patches();
     // Those that are found now come straight from the solver; what it knows of them is read side by side.
     const std::size_t first_found = loose.size();
     solver.refresh(states, lane_shapes, static_cast<float>(speculative_distance), scheduler.get(),
@@ -181,8 +192,22 @@ void WorldState<D>::collide(double dt) {
                                     static_cast<float>(0.5 * speculative_distance), static_cast<float>(dt),
                                     static_cast<float>(length(definition.gravity) * dt * dt)};
     for (const std::uint32_t i : apart.find_near(states, lane_shapes, limits, scheduler.get())) loosen(i);
+    list_patches();
     run_range(scheduler.get(), loose.size(), 32, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
+            // They lie anywhere, so what is needed soon is asked for now: first the contact, then its bodies.
+            constexpr std::size_t soon = 2, later = 4;
+            if (k + later < end) {
+                fetch_ahead(contacts[loose[k + later]]);
+                fetch_ahead(caches[loose[k + later]]);
+            }
+            if (k + soon < end) {
+                const ContactRecord<D>& next = contacts[loose[k + soon]];
+                for (const std::uint32_t body : {next.body_a, next.body_b}) {
+                    fetch_ahead(states[body]);
+                    fetch_ahead(masses[body]);
+                }
+            }
             ContactRecord<D>& c = contacts[loose[k]];
             if (first_found <= k && k < found_end) solver.read(caches[loose[k]], c);
             if (any_moves(c.body_a, c.body_b)) update_contact(c, caches[loose[k]], dt);

@@ -42,23 +42,39 @@ void WorldState<D>::list_fixed_contact(std::uint32_t contact) {
         {mover(c), a_moves ? c.shape_a : c.shape_b, a_moves ? c.shape_b : c.shape_a, c.facet, contact});
 }
 
+/// Lists the contacts with fixed shapes of these bodies, which ascend, in the order of bodies and shapes.
 template <int D>
-void WorldState<D>::sort_fixed_contacts() {
-    std::ranges::sort(fixed_contacts, [](const FixedContact& a, const FixedContact& b) {
-        return std::tie(a.body, a.shape, a.other, a.facet) < std::tie(b.body, b.shape, b.other, b.facet);
-    });
+void WorldState<D>::list_fixed_contacts(std::span<const std::uint32_t> bodies) {
+    fixed_contacts.clear();
+    for (const std::uint32_t body : bodies) {
+        const std::size_t first = fixed_contacts.size();
+        each_contact_of(body, true, [&](std::uint32_t contact) { list_fixed_contact(contact); });
+        sort_fixed_contacts(first);
+    }
 }
 
-/// Lists the contacts of bodies that have several with fixed shapes, and what they were.
+/// Those from `first` on, which are all of one body.
+template <int D>
+void WorldState<D>::sort_fixed_contacts(std::size_t first) {
+    std::sort(fixed_contacts.begin() + static_cast<std::ptrdiff_t>(first), fixed_contacts.end(),
+              [](const FixedContact& a, const FixedContact& b) {
+                  return std::tie(a.shape, a.other, a.facet) < std::tie(b.shape, b.other, b.facet);
+              });
+}
+
+/// Lists the contacts with fixed shapes of bodies that have several and may touch one, and what they were.
+/// Those that are known to be apart count as well: the surface goes on there.
 template <int D>
 void WorldState<D>::list_patches() {
-    fixed_contacts.clear();
     for (const std::uint32_t i : loose) {
         const ContactRecord<D>& c = contacts[i];
         if (c.on_fixed && moving[mover(c)] == moves_freely && fixed_contacts_of[mover(c)] > 1)
-            list_fixed_contact(i);
+            picked.push_back(mover(c));
     }
-    sort_fixed_contacts();
+    std::ranges::sort(picked);
+    picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+    list_fixed_contacts(picked);
+    picked.clear();
 
     // Only a shape that has several needs to know what they were.
     patches_before.clear();
@@ -171,10 +187,11 @@ void WorldState<D>::merge_members(std::uint32_t body, std::span<const ContactRec
     }
 }
 
-#define CAROM_INSTANTIATE(D)                                        \
-    template void WorldState<D>::list_fixed_contact(std::uint32_t); \
-    template void WorldState<D>::sort_fixed_contacts();             \
-    template void WorldState<D>::list_patches();                    \
+#define CAROM_INSTANTIATE(D)                                                          \
+    template void WorldState<D>::list_fixed_contact(std::uint32_t);                   \
+    template void WorldState<D>::sort_fixed_contacts(std::size_t);                    \
+    template void WorldState<D>::list_fixed_contacts(std::span<const std::uint32_t>); \
+    template void WorldState<D>::list_patches();                                      \
     template void WorldState<D>::merge_patches();
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -235,7 +235,8 @@ struct WorldState {
     // patches.cpp: flush fixed shapes are one surface.
     void list_patches();
     void list_fixed_contact(std::uint32_t contact);
-    void sort_fixed_contacts();
+    void list_fixed_contacts(std::span<const std::uint32_t> bodies);
+    void sort_fixed_contacts(std::size_t first);
     template <class Visit>
     void each_fixed_group(const Visit& visit) const;
     void merge_patches();

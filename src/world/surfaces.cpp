@@ -37,8 +37,8 @@ std::optional<FacePlane<D>> facing_plane(const Facet<D>& facet, const Vec<D>& di
     return FacePlane<D>{outwards, dot(outwards, facet.points[0])};
 }
 
-template <int D>
-bool near_box(const OuterBox<D>& box, const Vec<D>& point, double reach) {
+template <int D, class Box>
+bool near_box(const Box& box, const Vec<D>& point, double reach) {
     for (int i = 0; i < D; ++i) {
         if (point[i] < box.lower[i] - reach || point[i] > box.upper[i] + reach) return false;
     }
@@ -103,20 +103,33 @@ bool WorldState<D>::is_artefact_of_seam(const ContactRecord<D>& c, const BodySta
     const Vec<D> n = (a_fixed ? 1.0 : -1.0) * narrow<double>(c.normal);
     const Vec<D> p = mover.position + arm - 0.5 * separation * n;  // on the fixed surface
     const double probe = std::clamp(0.02 * masses[body].radius, 10 * flush, 0.02);
+    // Most often all are facets of one terrain.
+    std::uint32_t placed_body = shapes[own_shape].body;
+    Transform<D> placed = frame_of(placed_body);
     const auto distance = [&](const FixedContact& other, const Vec<D>& from) {
         const ShapeRecord<D>& s = shapes[other.other];
-        return distance_from<D>(s.shape(), other.facet, frame_of(s.body), from);
+        if (s.body != placed_body) {
+            placed_body = s.body;
+            placed = frame_of(placed_body);
+        }
+        return distance_from<D>(s.shape(), other.facet, placed, from);
+    };
+    const auto holds = [&](const FixedContact& other, const Vec<D>& at) {
+        if (is_own(other) || !near_box<D>(fat_boxes[other.other], at, flush)) return false;
+        const ShapeRecord<D>& s = shapes[other.other];
+        if (s.shape().kind == ShapeKind::terrain && s.body == placed_body) {
+            const Vec<D> local = unrotate(placed.rotation, at - placed.position);
+            const Facet<D> facet = s.shape().terrain->facet(other.facet);
+            return near_box<D>(facet.bounds(), local, flush) && distance_to_facet(facet, local) <= flush;
+        }
+        return distance(other, at) <= flush;
     };
     const auto covers = [&](const Vec<D>& at) {
-        return std::any_of(first, last, [&](const FixedContact& other) {
-            return !is_own(other) && near_box(fat_boxes[other.other], at, flush) &&
-                   distance(other, at) <= flush;
-        });
+        return std::any_of(first, last, [&](const FixedContact& other) { return holds(other, at); });
     };
     const auto reaches_out = [&](const FixedContact& other) {
         constexpr double rounding = 1e-7;
-        return !is_own(other) && near_box(fat_boxes[other.other], p, flush) && distance(other, p) <= flush &&
-               distance(other, p + probe * n) < (1 - rounding) * probe;
+        return holds(other, p) && distance(other, p + probe * n) < (1 - rounding) * probe;
     };
     if (std::none_of(first, last, reaches_out)) return false;
 

@@ -54,27 +54,44 @@ void box_facet(const Shape<3>& box, const Vec3& direction, Facet3& facet) {
     set_face(facet, rotate(box.rotation, normal), Facet3::Form::face);
 }
 
-void hull_facet(const Shape<3>& hull, const Vec3& direction, Facet3& facet) {
-    const Polyhedron& core = *hull.core;
+/// The face that looks most along the direction, the first of several, among those with a corner that lies
+/// at least so far along it.
+std::size_t most_aligned_face(const Polyhedron& core, const Vec3& direction, double reached) {
+    const auto touches = [&](std::size_t face) {
+        return std::any_of(core.indices.begin() + core.first[face],
+                           core.indices.begin() + core.first[face + 1],
+                           [&](std::uint32_t i) { return dot(direction, core.vertices[i]) >= reached; });
+    };
+    if (!core.faces.empty()) {
+        const std::size_t likely = core.faces.furthest(direction);
+        if (touches(likely)) return likely;
+    }
+    std::size_t best = 0;
+    double alignment = -2;
+    for (std::size_t f = 0; f < core.normals.size(); ++f) {
+        const double candidate = dot(direction, core.normals[f]);
+        if (candidate <= alignment || !touches(f)) continue;
+        alignment = candidate;
+        best = f;
+    }
+    return best;
+}
+
+/// The least and the greatest product of the corners with the direction.
+std::array<double, 2> range_along(const Polyhedron& core, const Vec3& direction) {
+    if (!core.corners.empty()) return core.corners.range(direction);
     double lowest = 1e300, highest = -1e300;
     for (const Vec3& vertex : core.vertices) {
         lowest = std::min(lowest, dot(direction, vertex));
         highest = std::max(highest, dot(direction, vertex));
     }
-    const double reached = highest - 1e-6 * (highest - lowest);
-    std::size_t best = 0;
-    double alignment = -2;
-    for (std::size_t f = 0; f < core.normals.size(); ++f) {
-        const double candidate = dot(direction, core.normals[f]);
-        if (candidate <= alignment) continue;
-        const bool touches =
-            std::any_of(core.indices.begin() + core.first[f], core.indices.begin() + core.first[f + 1],
-                        [&](std::uint32_t index) { return dot(direction, core.vertices[index]) >= reached; });
-        if (touches) {
-            alignment = candidate;
-            best = f;
-        }
-    }
+    return {lowest, highest};
+}
+
+void hull_facet(const Shape<3>& hull, const Vec3& direction, Facet3& facet) {
+    const Polyhedron& core = *hull.core;
+    const auto [lowest, highest] = range_along(core, direction);
+    const std::size_t best = most_aligned_face(core, direction, highest - 1e-6 * (highest - lowest));
     facet.id = static_cast<std::uint32_t>(best);
     facet.corners.clear();
     facet.corners.reserve(core.first[best + 1] - core.first[best]);

@@ -33,6 +33,16 @@ class Heights3 {
     }
 
     double operator[](std::size_t face) const { return heights_[face]; }
+    /// The first faces over which the point is higher than `least`, of `count`; as many as are returned.
+    /// Nothing branches, as nobody could tell which way.
+    std::size_t list_above(double least, std::size_t count, std::uint32_t* faces) const {
+        std::size_t listed = 0;
+        for (std::size_t f = 0; f < count; ++f) {
+            faces[listed] = static_cast<std::uint32_t>(f);
+            listed += heights_[f] > least;
+        }
+        return listed;
+    }
     /// Is the point below both faces of the edge by more than −`gap`?
     bool hides(const Polyhedron::Edge& edge, double gap) const {
         return std::max(heights_[edge.left], heights_[edge.right]) < gap;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 #include "collision/manifold/heights_3.hpp"
@@ -23,20 +24,50 @@ struct FaceGap {
     std::size_t face = none;
 };
 
+/// Corners of a polyhedron that are nearest to another one or deepest in it, each over some face.
+struct NearCorners {
+    static constexpr std::size_t most = 6;
+    std::array<Vec3, most> places;
+    std::size_t found = 0;  ///< if there were more than room for, the last ones are kept
+
+    void add(const Vec3& corner) { places[found++ % most] = corner; }
+    std::span<const Vec3> all() const { return std::span(places).first(std::min(found, most)); }
+};
+
 /// Looks for a wider gap than `best` has along the normals of a's faces, b's corners being placed in a's
 /// frame by `b_in_a`. No gap is more than the height of any of b's points over the face (`heights` are those
-/// of the first `best.corner`), which spares most faces the look at all of b's corners, since the best one's
-/// is where b is nearest to a or deepest in it.
+/// of the first `best.corner`), which spares most faces the look at all of b's corners. The face over which
+/// it is highest is looked at first: no other is likely to show a wider gap. Of equal ones the first counts;
+/// heights are trusted but for rounding, so that the order makes no difference.
 FaceGap widest_over_faces(const Polyhedron& a, const Polyhedron& b, const Transform3& b_in_a,
-                          const Heights3& heights, FaceGap best, double limit) {
-    for (std::size_t f = 0; f < a.normals.size() && best.gap <= limit; ++f) {
-        if (heights[f] <= best.gap) continue;
-        if (best.face != none && dot(a.normals[f], best.corner) - a.offsets[f] <= best.gap) continue;
-        const Vec3 normal = unrotate(b_in_a.rotation, a.normals[f]);
+                          const Heights3& heights, FaceGap best, double limit, NearCorners& corners,
+                          Memory3& memory) {
+    const double rounding =
+        1e-13 * (length(b_in_a.position) + length(a.middle) + a.extent + length(b.middle) + b.extent);
+    std::pmr::vector<std::uint32_t> faces(a.normals.size(), &memory.resource);
+    const std::size_t count = heights.list_above(best.gap - rounding, a.normals.size(), faces.data());
+    std::size_t highest = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+        if (heights[faces[i]] > heights[faces[highest]]) highest = i;
+    }
+    std::swap(faces[0], faces[highest]);
+    for (std::size_t i = 0; i < count && best.gap <= limit; ++i) {
+        const std::size_t f = faces[i];
+        const Vec3& outwards = a.normals[f];
+        const double needed = best.gap - rounding;
+        const auto is_below = [&](const Vec3& corner) {
+            return dot(outwards, corner) - a.offsets[f] < needed;
+        };
+        if (heights[f] < needed) continue;
+        if (std::ranges::any_of(corners.all(), is_below)) continue;
+        const Vec3 normal = unrotate(b_in_a.rotation, outwards);
         const Vec3& lowest = b.vertices[furthest_corner(b, -normal)];
-        const double base = dot(a.normals[f], b_in_a.position) - a.offsets[f];
+        const double base = dot(outwards, b_in_a.position) - a.offsets[f];
         const double gap = base + dot(normal, lowest);
-        if (gap > best.gap) best = {gap, apply(b_in_a, lowest), f};
+        const Vec3 corner = apply(b_in_a, lowest);
+        corners.add(corner);
+        if (gap > best.gap || (gap == best.gap && best.face != none && f < best.face))
+            best = {gap, corner, f};
     }
     return best;
 }
@@ -52,18 +83,57 @@ struct Arc {
 };
 using Arcs = std::pmr::vector<Arc>;
 
-/// The edges, placed by `t`, that can part the polyhedron by more than `gap` from another one, which has two
-/// points at these heights over the faces.
-void find_arcs(const Polyhedron& core, const Transform3& t, const Heights3& of_first,
-               const Heights3& of_second, double gap, Arcs& arcs) {
+/// Takes vectors to the frame in which `t` is placed, where many are to be.
+class Carrier {
+  public:
+    explicit Carrier(const Transform3& t)
+        : x_(rotate(t.rotation, {1, 0, 0})),
+          y_(rotate(t.rotation, {0, 1, 0})),
+          z_(rotate(t.rotation, {0, 0, 1})),
+          origin_(t.position) {}
+    Vec3 direction(const Vec3& v) const { return v.x * x_ + v.y * y_ + v.z * z_; }
+    Vec3 point(const Vec3& v) const { return origin_ + direction(v); }
+
+  private:
+    Vec3 x_, y_, z_, origin_;
+};
+/// Leaves them as they are.
+struct StaysHere {
+    static const Vec3& direction(const Vec3& v) { return v; }
+    static const Vec3& point(const Vec3& v) { return v; }
+};
+
+/// The edges, carried along, that can part the polyhedron by more than `gap` from another one, of which a
+/// point has these heights over the faces and `corners` are some. Each corner spares far more pairs of edges
+/// than it costs.
+template <class Carry>
+Arcs find_arcs(const Polyhedron& core, const Carry& carry, const Heights3& heights,
+               const NearCorners& corners, double gap, Memory3& memory) {
     const double needed = std::min(gap, 0.0) - core.unevenness;
+    std::pmr::vector<std::uint8_t> seen(core.normals.size(), &memory.resource);  // a bit a point
+    std::uint8_t all = 0;
+    const auto look_from = [&](const Heights3& over) {
+        const int bit = all + 1;
+        for (std::size_t f = 0; f < seen.size(); ++f)
+            seen[f] = static_cast<std::uint8_t>(seen[f] | (over[f] >= needed ? bit : 0));
+        all = static_cast<std::uint8_t>(all | bit);
+    };
+    look_from(heights);
+    for (const Vec3& corner : corners.all()) look_from(Heights3(core, corner, memory));
+    std::pmr::vector<const Polyhedron::Edge*> kept(core.edges.size(), &memory.resource);
+    std::size_t count = 0;
     for (const Polyhedron::Edge& edge : core.edges) {
-        if (of_first.hides(edge, needed) || of_second.hides(edge, needed)) continue;
-        const Vec3& from = core.vertices[edge.from];
-        arcs.push_back({apply(t, from), rotate(t.rotation, core.vertices[edge.to] - from),
-                        rotate(t.rotation, core.normals[edge.left]),
-                        rotate(t.rotation, core.normals[edge.right])});
+        kept[count] = &edge;
+        count += (seen[edge.left] | seen[edge.right]) == all;
     }
+    Arcs arcs(count, &memory.resource);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Polyhedron::Edge& edge = *kept[i];
+        const Vec3& from = core.vertices[edge.from];
+        arcs[i] = {carry.point(from), carry.direction(core.vertices[edge.to] - from),
+                   carry.direction(core.normals[edge.left]), carry.direction(core.normals[edge.right])};
+    }
+    return arcs;
 }
 
 /// Do the arcs of the Gauss map, from a's normal on the left to that on the right and between the opposites
@@ -131,11 +201,14 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
 
     Memory3 memory;
     const Heights3 over_a(a, start.on_b, memory);
-    const FaceGap of_a = widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit);
+    NearCorners of_b_near_a, of_a_near_b;
+    const FaceGap of_a =
+        widest_over_faces(a, b, b_in_a, over_a, {least, start.on_b}, search.limit, of_b_near_a, memory);
     if (of_a.gap > search.limit) return at_face(a, of_a);
     const Vec3 near_a = apply(a_in_b, start.on_a);
     const Heights3 over_b(b, near_a, memory);
-    const FaceGap of_b = widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit);
+    const FaceGap of_b =
+        widest_over_faces(b, a, a_in_b, over_b, {of_a.gap, near_a}, search.limit, of_a_near_b, memory);
     if (of_b.gap > search.limit) return exchanged(at_face(b, of_b), b_in_a);
 
     // A face of a is favoured if no other gap is wider by more than the advantage, or else a face of b.
@@ -145,10 +218,11 @@ Nearest3 polyhedron_polyhedron(const Pair3& pair, const Search3& search) {
     const double up_to_a = favoured_up_to(of_a), up_to_b = favoured_up_to(of_b);
     const bool a_leads = up_to_a >= of_b.gap;
     const double needed = std::max(of_b.gap, a_leads ? up_to_a : up_to_b);
-    Arcs arcs_a(&memory.resource), arcs_b(&memory.resource);
-    find_arcs(a, {}, over_a, Heights3(a, of_a.corner, memory), needed, arcs_a);
-    if (!arcs_a.empty()) find_arcs(b, b_in_a, over_b, Heights3(b, of_b.corner, memory), needed, arcs_b);
-    const Nearest3 of_edges = widest_over_edges(arcs_a, arcs_b);
+    const Arcs arcs_a = find_arcs(a, StaysHere{}, over_a, of_b_near_a, needed, memory);
+    Nearest3 of_edges = nothing;
+    if (!arcs_a.empty())
+        of_edges =
+            widest_over_edges(arcs_a, find_arcs(b, Carrier(b_in_a), over_b, of_a_near_b, needed, memory));
     if (a_leads && up_to_a >= of_edges.distance) return at_face(a, of_a);
     return up_to_b >= of_edges.distance ? exchanged(at_face(b, of_b), b_in_a) : of_edges;
 }

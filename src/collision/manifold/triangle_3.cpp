@@ -286,9 +286,12 @@ template <>
 Manifold<3> collide_facet(const Shape<3>& convex, const Facet<3>& facet, const Transform3& placed,
                           double reach, const Vec3& axis) {
     // Most facets near a shape are apart from it along the axis of last time, or in front of it.
-    const double last_gap = gap_along(convex, facet, placed, axis);
-    if (last_gap > reach) return apart_along(axis, last_gap);
     const Vec3 front = facet.normal();
+    constexpr double same_cosine = 1 - 1e-6;
+    if (dot(axis, front) < same_cosine) {
+        const double last_gap = gap_along(convex, facet, placed, axis);
+        if (last_gap > reach) return apart_along(axis, last_gap);
+    }
     if (is_behind(facet, front, apply(placed, middle_of(convex)))) return {};
     const double height = gap_along(convex, facet, placed, front);
     if (height > reach) return apart_along(front, height);
