@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -92,6 +91,8 @@ CAROM_INLINE void store_quads(float* base, const std::uint32_t* index, std::size
         store_quads<n / 2, quads>(base, index + n / 2, stride, upper_half<n, quads>(from));
     }
 }
+
+constexpr std::uint32_t lane_numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// Two doubles each for the lanes 0, 2, 4, ... of `index`.
 template <int n>
@@ -242,8 +243,7 @@ class Lanes {
                                                  More... more) {
         constexpr int floats = 4 + sizeof...(more);
         alignas(64) float close[count][floats];
-        alignas(64) constexpr auto lanes = numbers();
-        scatter_record(close[0], lanes.data(), floats, a, b, c, d, more...);
+        scatter_record(close[0], lane_numbers, floats, a, b, c, d, more...);
         for (int lane = 0; lane < count; ++lane) {
             if (index[lane] >= first)
                 std::memcpy(base + index[lane] * stride, close[lane], sizeof(close[lane]));
@@ -252,12 +252,6 @@ class Lanes {
 
   private:
     Lanes(Register v) : v_(v) {}
-
-    static constexpr std::array<std::uint32_t, count> numbers() {
-        std::array<std::uint32_t, count> all{};
-        for (int lane = 0; lane < count; ++lane) all[lane] = static_cast<std::uint32_t>(lane);
-        return all;
-    }
 
     /// From registers of records, of the lanes k, k + 4, k + 8, ..., to registers of lanes.
     template <int quads, class... More>
