@@ -20,28 +20,79 @@ using Register = hn::Vec<Tag>;
 using WideTag = hn::Repartition<double, Tag>;
 using WideRegister = hn::Vec<WideTag>;
 
-/// Four floats each for the lanes 0, 4, 8, ... of `index`.
 template <int n>
-CAROM_INLINE auto load_quads(const float* base, const std::uint32_t* index, std::size_t stride) {
-    const hn::FixedTag<float, n> tag;
-    if constexpr (n == 4) {
-        return hn::LoadU(tag, base + index[0] * stride);
-    } else {
-        return hn::Combine(tag, load_quads<n / 2>(base, index + n / 2, stride),
-                           load_quads<n / 2>(base, index, stride));
+using Floats = hn::Vec<hn::FixedTag<float, n>>;
+
+/// Quads of floats that follow one another in each of some records. Nested, not an array, so that compilers
+/// keep them in registers.
+template <int n, int quads>
+struct Quads {
+    Floats<n> first;
+    Quads<n, quads - 1> rest;
+};
+template <int n>
+struct Quads<n, 0> {};
+
+template <int quads>
+CAROM_INLINE Quads<4, quads> load_quads(const float* from) {
+    if constexpr (quads > 0)
+        return {hn::LoadU(hn::FixedTag<float, 4>(), from), load_quads<quads - 1>(from + 4)};
+    else
+        return {};
+}
+template <int quads>
+CAROM_INLINE void store_quads(const Quads<4, quads>& from, float* to) {
+    if constexpr (quads > 0) {
+        hn::StoreU(from.first, hn::FixedTag<float, 4>(), to);
+        store_quads<quads - 1>(from.rest, to + 4);
     }
 }
 
-template <int n, class V>
-CAROM_INLINE void store_quads(float* base, const std::uint32_t* index, std::size_t stride, V v) {
+template <int n, int quads>
+CAROM_INLINE Quads<2 * n, quads> combined(const Quads<n, quads>& low, const Quads<n, quads>& high) {
+    if constexpr (quads > 0)
+        return {hn::Combine(hn::FixedTag<float, 2 * n>(), high.first, low.first),
+                combined<n, quads - 1>(low.rest, high.rest)};
+    else
+        return {};
+}
+template <int n, int quads>
+CAROM_INLINE Quads<n / 2, quads> lower_half(const Quads<n, quads>& all) {
+    if constexpr (quads > 0)
+        return {hn::LowerHalf(hn::FixedTag<float, n / 2>(), all.first), lower_half<n, quads - 1>(all.rest)};
+    else
+        return {};
+}
+template <int n, int quads>
+CAROM_INLINE Quads<n / 2, quads> upper_half(const Quads<n, quads>& all) {
+    if constexpr (quads > 0)
+        return {hn::UpperHalf(hn::FixedTag<float, n / 2>(), all.first), upper_half<n, quads - 1>(all.rest)};
+    else
+        return {};
+}
+
+/// Of the lanes 0, 4, 8, ... of `index`. All quads of a record are read together, so that where it lies is
+/// worked out once.
+template <int n, int quads>
+CAROM_INLINE Quads<n, quads> load_quads(const float* base, const std::uint32_t* index, std::size_t stride) {
+    if constexpr (n == 4)
+        return load_quads<quads>(base + index[0] * stride);
+    else
+        return combined<n / 2, quads>(load_quads<n / 2, quads>(base, index, stride),
+                                      load_quads<n / 2, quads>(base, index + n / 2, stride));
+}
+template <int n, int quads>
+CAROM_INLINE void store_quads(float* base, const std::uint32_t* index, std::size_t stride,
+                              const Quads<n, quads>& from) {
     if constexpr (n == 4) {
-        hn::StoreU(v, hn::FixedTag<float, 4>(), base + index[0] * stride);
+        store_quads<quads>(from, base + index[0] * stride);
     } else {
-        const hn::FixedTag<float, n / 2> half;
-        store_quads<n / 2>(base, index, stride, hn::LowerHalf(half, v));
-        store_quads<n / 2>(base, index + n / 2, stride, hn::UpperHalf(half, v));
+        store_quads<n / 2, quads>(base, index, stride, lower_half<n, quads>(from));
+        store_quads<n / 2, quads>(base, index + n / 2, stride, upper_half<n, quads>(from));
     }
 }
+
+constexpr std::uint32_t lane_numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// Two doubles each for the lanes 0, 2, 4, ... of `index`.
 template <int n>
@@ -164,41 +215,62 @@ class Lanes {
     friend Lanes minimum(Lanes a, Lanes b) { return select(b > a, a, b); }
 #endif
 
-    CAROM_INLINE friend void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride,
-                                          Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-        a.v_ = load_quads<count>(base, index, stride);
-        b.v_ = load_quads<count>(base, index + 1, stride);
-        c.v_ = load_quads<count>(base, index + 2, stride);
-        d.v_ = load_quads<count>(base, index + 3, stride);
-        transpose(a.v_, b.v_, c.v_, d.v_);
+    template <class... More>
+    CAROM_INLINE friend void gather_record(const float* base, const std::uint32_t* index, std::size_t stride,
+                                           Lanes& a, Lanes& b, Lanes& c, Lanes& d, More&... more) {
+        constexpr int quads = 1 + sizeof...(more) / 4;
+        give_out<quads>(load_quads<count, quads>(base, index, stride),
+                        load_quads<count, quads>(base, index + 1, stride),
+                        load_quads<count, quads>(base, index + 2, stride),
+                        load_quads<count, quads>(base, index + 3, stride), a, b, c, d, more...);
     }
 
-    CAROM_INLINE friend void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride,
-                                           Lanes a, Lanes b, Lanes c, Lanes d) {
-        transpose(a.v_, b.v_, c.v_, d.v_);
-        store_quads<count>(base, index, stride, a.v_);
-        store_quads<count>(base, index + 1, stride, b.v_);
-        store_quads<count>(base, index + 2, stride, c.v_);
-        store_quads<count>(base, index + 3, stride, d.v_);
+    template <class... More>
+    CAROM_INLINE friend void scatter_record(float* base, const std::uint32_t* index, std::size_t stride,
+                                            Lanes a, Lanes b, Lanes c, Lanes d, More... more) {
+        constexpr int quads = 1 + sizeof...(more) / 4;
+        Quads<count, quads> k0, k1, k2, k3;
+        take_in<quads>(k0, k1, k2, k3, a, b, c, d, more...);
+        store_quads<count, quads>(base, index, stride, k0);
+        store_quads<count, quads>(base, index + 1, stride, k1);
+        store_quads<count, quads>(base, index + 2, stride, k2);
+        store_quads<count, quads>(base, index + 3, stride, k3);
     }
 
-    CAROM_INLINE friend void scatter_quads_from(std::uint32_t first, float* base, const std::uint32_t* index,
-                                                std::size_t stride, Lanes a, Lanes b, Lanes c, Lanes d) {
-        alignas(64) float all[4][count];
-        const Tag tag;
-        hn::Store(a.v_, tag, all[0]);
-        hn::Store(b.v_, tag, all[1]);
-        hn::Store(c.v_, tag, all[2]);
-        hn::Store(d.v_, tag, all[3]);
+    template <class... More>
+    CAROM_INLINE friend void scatter_record_from(std::uint32_t first, float* base, const std::uint32_t* index,
+                                                 std::size_t stride, Lanes a, Lanes b, Lanes c, Lanes d,
+                                                 More... more) {
+        constexpr int floats = 4 + sizeof...(more);
+        alignas(64) float close[count][floats];
+        scatter_record(close[0], lane_numbers, floats, a, b, c, d, more...);
         for (int lane = 0; lane < count; ++lane) {
-            if (index[lane] < first) continue;
-            float* p = base + index[lane] * stride;
-            for (int k = 0; k < 4; ++k) p[k] = all[k][lane];
+            if (index[lane] >= first)
+                std::memcpy(base + index[lane] * stride, close[lane], sizeof(close[lane]));
         }
     }
 
   private:
     Lanes(Register v) : v_(v) {}
+
+    /// From registers of records, of the lanes k, k + 4, k + 8, ..., to registers of lanes.
+    template <int quads, class... More>
+    CAROM_INLINE static void give_out(Quads<count, quads> k0, Quads<count, quads> k1, Quads<count, quads> k2,
+                                      Quads<count, quads> k3, Lanes& a, Lanes& b, Lanes& c, Lanes& d,
+                                      More&... more) {
+        transpose(k0.first, k1.first, k2.first, k3.first);
+        a.v_ = k0.first, b.v_ = k1.first, c.v_ = k2.first, d.v_ = k3.first;
+        if constexpr (quads > 1) give_out<quads - 1>(k0.rest, k1.rest, k2.rest, k3.rest, more...);
+    }
+    /// And back.
+    template <int quads, class... More>
+    CAROM_INLINE static void take_in(Quads<count, quads>& k0, Quads<count, quads>& k1,
+                                     Quads<count, quads>& k2, Quads<count, quads>& k3, Lanes a, Lanes b,
+                                     Lanes c, Lanes d, More... more) {
+        transpose(a.v_, b.v_, c.v_, d.v_);
+        k0.first = a.v_, k1.first = b.v_, k2.first = c.v_, k3.first = d.v_;
+        if constexpr (quads > 1) take_in<quads - 1>(k0.rest, k1.rest, k2.rest, k3.rest, more...);
+    }
 
     Register v_;
 };

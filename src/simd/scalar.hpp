@@ -49,11 +49,13 @@ inline bool both(bool a, bool b) { return a && b; }
 inline bool either(bool a, bool b) { return a || b; }
 inline std::uint32_t bits_of(bool mask) { return mask; }
 
-/// Reads four floats that lie side by side at `base + index[lane] · stride` for every lane.
-inline void gather_quads(const float* base, const std::uint32_t* index, std::size_t stride, float& a,
-                         float& b, float& c, float& d) {
+/// Reads floats, a multiple of four, that lie side by side at `base + index[lane] · stride` for every lane.
+template <class... Floats>
+inline void gather_record(const float* base, const std::uint32_t* index, std::size_t stride, float& first,
+                          Floats&... more) {
     const float* p = base + index[0] * stride;
-    a = p[0], b = p[1], c = p[2], d = p[3];
+    first = *p;
+    ((more = *++p), ...);
 }
 
 /// Reads two doubles that lie side by side at `base + index[lane] · stride` for every lane.
@@ -70,17 +72,20 @@ inline void scatter_some(double* base, const std::uint32_t* index, std::size_t s
     for (int k = 0; k < n; ++k) base[index[0] * stride + k] = values[k];
 }
 
-/// Writes what `gather_quads` read. No two lanes may have the same index.
-inline void scatter_quads(float* base, const std::uint32_t* index, std::size_t stride, float a, float b,
-                          float c, float d) {
+/// Writes what `gather_record` read. No two lanes may have the same index.
+template <class... Floats>
+inline void scatter_record(float* base, const std::uint32_t* index, std::size_t stride, float first,
+                           Floats... more) {
     float* p = base + index[0] * stride;
-    p[0] = a, p[1] = b, p[2] = c, p[3] = d;
+    *p = first;
+    ((*++p = more), ...);
 }
 
 /// The same, but only lanes with an index of at least `first` are written; the others may be equal.
-inline void scatter_quads_from(std::uint32_t first, float* base, const std::uint32_t* index,
-                               std::size_t stride, float a, float b, float c, float d) {
-    if (index[0] >= first) scatter_quads(base, index, stride, a, b, c, d);
+template <class... Floats>
+inline void scatter_record_from(std::uint32_t first, float* base, const std::uint32_t* index,
+                                std::size_t stride, Floats... all) {
+    if (index[0] >= first) scatter_record(base, index, stride, all...);
 }
 
 }  // namespace carom::detail

@@ -20,14 +20,6 @@ struct MarkFields {
     static std::size_t is_newer() { return field_of(model, model.is_newer); }
 };
 
-/// Where a point was whose place on the bodies is not known: it is found again by its feature alone.
-template <int D>
-Vec<D, float> nowhere_near() {
-    Vec<D, float> place;
-    place.x = 1e6f;
-    return place;
-}
-
 float lane_feature(std::uint32_t feature) {
     constexpr std::uint32_t first_inexact = 1u << 24;
     return feature < first_inexact ? static_cast<float>(feature) : -1.0f;
@@ -81,15 +73,14 @@ ContactCache<D> cache_of(const ContactMarks<D, float>& marks, float roundness_a,
 template <int D>
 ContactRows<D, float> rows_of(const ContactRecord<D>& record) {
     ContactRows<D, float> rows;
-    rows.normal = record.normal;
-    const auto t = tangents<D>(record.normal);
-    rows.tangent = t[0];
+    set_normal(rows, record.normal);
+    const auto t = frame_of(rows).tangents;
     for (int i = 0; i < D - 1; ++i) {
         rows.friction_impulse[i] = dot(record.friction_impulse, t[i]);
         rows.surface_speed[i] = dot(record.surface_velocity, t[i]);
     }
     rows.friction = record.friction;
-    rows.twist_impulse = record.twist_impulse;
+    if constexpr (D == 3) rows.twist_impulse = record.twist_impulse;
     rows.roundness_a = record.roundness_a;
     rows.roundness_b = record.roundness_b;
     rows.rolling = record.rolling;
@@ -97,10 +88,16 @@ ContactRows<D, float> rows_of(const ContactRecord<D>& record) {
     return rows;
 }
 
+/// Where the points of a contact are, seen from either body.
 template <int D>
-void set_point(NormalRow<D, float>& row, const ContactRecordPoint<D>& from) {
-    row.arm_a = from.arm_a;
-    row.arm_b = from.arm_b;
+struct Arms {
+    std::array<Vec<D, float>, max_points<D>> a{}, b{};
+};
+
+template <int D>
+void set_point(NormalRow<D, float>& row, Arms<D>& arms, int k, const ContactRecordPoint<D>& from) {
+    arms.a[k] = from.arm_a;
+    arms.b[k] = from.arm_b;
     row.separation = from.separation;
     row.impulse = from.impulse;
     row.mass = 1;  // used; see `weigh_rows`
@@ -134,8 +131,8 @@ std::uint32_t ContactStore<D>::push(std::uint32_t contact, const BodyPair& bodie
         found_.push_back(0);
         for (std::size_t lane = index; lane < lanes; ++lane) clear(static_cast<std::uint32_t>(lane));
     }
-    a_[index] = bodies.slot_a;
-    b_[index] = bodies.slot_b;
+    a_[index] = record_of<D>(bodies.slot_a);
+    b_[index] = record_of<D>(bodies.slot_b);
     body_a_[index] = bodies.body_a;
     body_b_[index] = bodies.body_b;
     contact_[index] = contact;
@@ -195,7 +192,7 @@ template <int D>
 void ContactStore<D>::mark_fixed(std::size_t block, std::uint32_t first_movable) {
     bool fixed = false;
     for (std::size_t lane = block * width(); lane < (block + 1) * width(); ++lane)
-        fixed |= a_[lane] < first_movable || b_[lane] < first_movable;
+        fixed |= slot_of<D>(a_[lane]) < first_movable || slot_of<D>(b_[lane]) < first_movable;
     traits_[block] = static_cast<std::uint8_t>((traits_[block] & ~some_fixed) | (fixed ? some_fixed : 0));
 }
 
@@ -203,6 +200,7 @@ template <int D>
 void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
                             const Carrying<D>* carrying) {
     Rows rows = rows_of(record);
+    Arms<D> arms;
     Marks marks;
     if (carrying && carrying->cache.count > 0) {
         const ContactCache<D>& cache = carrying->cache;
@@ -210,16 +208,17 @@ void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
         int next = 0;  // the record has those of the cache's points that are within reach, in their order
         for (int k = 0; k < cache.count && next < record.count; ++k) {
             if (record.points[next].feature == cache.points[k].feature)
-                set_point(rows.points[k], record.points[next++]);
+                set_point(rows.points[k], arms, k, record.points[next++]);
         }
     } else {
         marks.way_squared = -1;
         for (int k = 0; k < record.count; ++k) {
-            set_point(rows.points[k], record.points[k]);
-            marks.points[k].on_a = marks.points[k].on_b = nowhere_near<D>();
+            set_point(rows.points[k], arms, k, record.points[k]);
+            marks.points[k].on_a.x = marks.points[k].on_b.x = unknown_place;
             marks.points[k].feature = lane_feature(record.points[k].feature);
         }
     }
+    place_points(rows, frame_of(rows), arms.a, arms.b);
     const LanePair<D> shapes = carrying ? carrying->shapes : LanePair<D>{};
     marks.can_be_remade = shapes ? 1.0f : 0.0f;
     shape_a_[index] = shapes.a;
@@ -231,6 +230,7 @@ void ContactStore<D>::write(std::uint32_t index, const ContactRecord<D>& record,
     std::uint8_t& traits = traits_[index / width()];
     if (record.rolling > 0) traits |= some_rolling;
     if (record.roundness_a != 0 || record.roundness_b != 0) traits |= some_round;
+    if (rows.surface_speed != decltype(rows.surface_speed){}) traits |= some_belts;
     if (record.restitution == 0) return;
     traits |= some_bouncy;
     some_bounce_ = true;
@@ -245,7 +245,7 @@ void ContactStore<D>::read(std::uint32_t index, ContactCache<D>& cache, ContactR
     record.normal = rows.normal;
     record.friction_impulse = along_tangents(rows, rows.friction_impulse);
     record.total_friction = along_tangents(rows, rows.total_friction);
-    record.twist_impulse = rows.twist_impulse;
+    if constexpr (D == 3) record.twist_impulse = rows.twist_impulse;
     record.spin_impulse = rows.rolling_impulse;
     const bool carried = cache.count > 0 && is_carried(index);
     const int count = carried ? cache.count : record.count;
@@ -255,8 +255,8 @@ void ContactStore<D>::read(std::uint32_t index, ContactCache<D>& cache, ContactR
         if (carried && !(row.mass > 0)) continue;
         ContactRecordPoint<D>& p = record.points[carried ? record.count++ : k];
         if (carried) p.feature = cache.points[k].feature;
-        p.arm_a = row.arm_a;
-        p.arm_b = row.arm_b;
+        p.arm_a = arm_a(rows, row);
+        p.arm_b = arm_b(rows, row);
         p.separation = row.separation;
         p.impulse = row.impulse;
         p.total_impulse = row.total_impulse;

@@ -66,8 +66,9 @@ class ContactStore {
     bool some_bounce() const { return some_bounce_; }
     std::uint32_t contact(std::size_t index) const { return contact_[index]; }
     void rename(std::uint32_t index, std::uint32_t contact) { contact_[index] = contact; }
-    std::uint32_t a(std::size_t index) const { return a_[index]; }
-    std::uint32_t b(std::size_t index) const { return b_[index]; }
+    /// Slots of its bodies.
+    std::uint32_t a(std::size_t index) const { return slot_of<D>(a_[index]); }
+    std::uint32_t b(std::size_t index) const { return slot_of<D>(b_[index]); }
     std::uint32_t body_a(std::size_t index) const { return body_a_[index]; }
     std::uint32_t body_b(std::size_t index) const { return body_b_[index]; }
     std::uint8_t traits(std::size_t block) const { return traits_[block]; }
@@ -87,10 +88,11 @@ class ContactStore {
     bool some_bounce_ = false;
     LaneStore<Rows> rows_;
     LaneStore<Marks> marks_;
-    std::vector<std::uint32_t> a_, b_, body_a_, body_b_, shape_a_, shape_b_;  ///< by lane
-    std::vector<std::uint32_t> contact_;                                      ///< by lane
-    std::vector<std::uint8_t> traits_;                                        ///< by block
-    std::vector<std::uint32_t> found_;                                        ///< by block
+    std::vector<std::uint32_t> a_, b_;                                ///< records of the bodies, by lane
+    std::vector<std::uint32_t> body_a_, body_b_, shape_a_, shape_b_;  ///< by lane
+    std::vector<std::uint32_t> contact_;                              ///< by lane
+    std::vector<std::uint8_t> traits_;                                ///< by block
+    std::vector<std::uint32_t> found_;                                ///< by block
 };
 
 }  // namespace carom::detail

@@ -7,12 +7,12 @@ namespace carom::detail {
 
 namespace {
 
-constexpr int free_rounds = 3;             ///< in which limits, motors and friction find which of them hold
-constexpr int most_rounds = 12;            ///< with those in which they only let go
-constexpr int most_sweeps = 3;             ///< of refinement
-constexpr double small_speed = 1e-8;       ///< m/s and rad/s
-constexpr int most_turns = 8;              ///< in which directions and velocities agree
-constexpr double small_change = 1e-5;      ///< m and rad in a sub-step
+constexpr int free_rounds = 3;         ///< in which limits, motors and friction find which of them hold
+constexpr int most_rounds = 12;        ///< with those in which they only let go, but for those that end it
+constexpr int most_sweeps = 3;         ///< of refinement
+constexpr double small_speed = 1e-8;   ///< m/s and rad/s
+constexpr int most_turns = 16;         ///< in which directions and velocities agree
+constexpr double small_change = 1e-6;  ///< m and rad in a sub-step
 constexpr double most_misdirection = 0.1;  ///< beyond which they do not agree
 
 template <int D>
@@ -147,13 +147,24 @@ void DirectSolver<D>::assemble(const Group& group) {
     }
 }
 
-/// The joint's own block on the diagonal.
+/// The joint's own block on the diagonal. Springs are as stiff as the masses say, whatever the bodies answer.
 template <int D>
 void DirectSolver<D>::weigh(std::uint32_t node) {
-    const std::span<Row> rows = rows_of(joints_[node]);
+    const DirectJoint<D>& joint = joints_[node];
+    const std::span<Row> rows = rows_of(joint);
     constexpr std::size_t n = DirectJoint<D>::most_rows;
+    const Weight<D, double>&wa = members_[joint.a].weight, &wb = members_[joint.b].weight;
     double* to = own_.data() + node * n * n;
+    double* alone = alone_.data() + node * n * n;
     for (std::size_t r = 0; r < rows.size(); ++r) {
+        const int part = joint.part_of(static_cast<int>(r));
+        for (std::size_t c = 0; c <= r && joint.is_sprung(part); ++c) {
+            if (joint.part_of(static_cast<int>(c)) != part) continue;
+            const Side &v = rows[r].middle, &w = rows[c].middle;
+            alone[r * n + c] = alone[c * n + r] = dot(w.force, each(wa.mass + wb.mass, v.force)) +
+                                                  angular_dot(w.on_a, Angular<D>(wa.inertia * v.on_a)) +
+                                                  angular_dot(w.on_b, Angular<D>(wb.inertia * v.on_b));
+        }
         const Effect& e = effects_[joints_[node].first_row + r];
         for (std::size_t c = 0; c <= r; ++c) {
             const Side& w = rows[c].middle;
@@ -183,7 +194,8 @@ void DirectSolver<D>::set_diagonal(std::uint32_t node, bool with_springs) {
         const double softness = laws_[joint.first_row + static_cast<std::uint32_t>(r)].softness;
         for (int c = 0; c < count; ++c, ++to) {
             *to = own(node, r, c);
-            if (with_springs && joint.part_of(r) == joint.part_of(c)) *to *= 1 + softness;
+            if (with_springs && softness > 0 && joint.part_of(r) == joint.part_of(c))
+                *to += softness * alone(node, r, c);
             if (r == c) *to *= 1 + joint.compliance;
         }
     }
@@ -202,7 +214,7 @@ double DirectSolver<D>::softened(std::uint32_t node, std::uint32_t row) const {
     for (int c = 0; c < joint.row_count(); ++c) {
         const std::uint32_t other = joint.first_row + static_cast<std::uint32_t>(c);
         if (joint.part_of(c) == joint.part_of(r))
-            sum += own(node, r, c) * (rows_[other].impulse - laws_[other].given);
+            sum += alone(node, r, c) * (rows_[other].impulse - laws_[other].given);
     }
     return firm + laws_[row].softness * sum;
 }
@@ -232,6 +244,7 @@ void DirectSolver<D>::solve_rows(const Group& group) {
 template <int D>
 void DirectSolver<D>::mend(const Group& group) {
     bool as_before = true;
+    double errors = 0;
     each_row(group, [&](std::uint32_t node, std::uint32_t row) {
         const DirectJoint<D>& joint = joints_[node];
         const int part = joint.part_of(static_cast<int>(row - joint.first_row));
@@ -239,21 +252,45 @@ void DirectSolver<D>::mend(const Group& group) {
         as_before = as_before && holds == (open_[row] != 0) && laws_[row].softness == 0;
         open_[row] = holds ? 1 : 0;
         right_[row] = holds ? -rows_[row].error : 0;
+        errors += std::fabs(right_[row]);
     });
+    if (errors == 0) return;
     if (!as_before) {
         for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) set_diagonal(k, false);
         matrix_.factorise(group.first_joint, group.last_joint, open_);
     }
     matrix_.solve(group.first_joint, group.last_joint, right_);
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        members_[i].wanted = {};
+        members_[i].wanted_spin = {};
+    }
     each_row(group, [&](std::uint32_t node, std::uint32_t row) {
-        Motion<D, double>&a = members_[joints_[node].a].motion, &b = members_[joints_[node].b].motion;
+        Member &a = members_[joints_[node].a], &b = members_[joints_[node].b];
         const Effect& e = effects_[row];
         const double by = right_[row];
-        a.moved -= by * e.push_a;
-        a.turned = a.turned - e.turn_a * by;
-        b.moved += by * e.push_b;
-        b.turned = b.turned + e.turn_b * by;
+        a.wanted -= by * e.push_a;
+        a.wanted_spin = a.wanted_spin - e.turn_a * by;
+        b.wanted += by * e.push_b;
+        b.wanted_spin = b.wanted_spin + e.turn_b * by;
     });
+    shift(group, 10 * errors);
+}
+
+/// Moves bodies by what they are wanted to go, but none further than `reach`, in m and rad. Where rows
+/// nearly depend on one another, a small error would throw bodies far away.
+template <int D>
+void DirectSolver<D>::shift(const Group& group, double reach) {
+    double furthest = 0;
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        const Member& m = members_[i];
+        furthest = std::max(furthest, dot(m.wanted, m.wanted) + angular_dot(m.wanted_spin, m.wanted_spin));
+    }
+    const double share = furthest > reach * reach ? reach / std::sqrt(furthest) : 1;
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        Member& m = members_[i];
+        m.motion.moved += share * m.wanted;
+        m.motion.turned = m.motion.turned + m.wanted_spin * share;
+    }
 }
 
 /// Keeps the impulses for the next pass.
@@ -270,14 +307,18 @@ void DirectSolver<D>::keep_impulses(DirectJoint<D>& joint) {
     }
 }
 
-/// Solves the rows as laid, until limits, motors and friction agree on which of them hold.
+/// Solves the rows as laid, until limits, motors and friction agree on which of them hold. In the end no
+/// limit pulls: then what was found is the nearest of all velocities that those limits allow which hold, and
+/// has no more energy than the velocities without the joints (as to stand still is allowed, too).
 template <int D>
 void DirectSolver<D>::solve_as_laid(const Group& group) {
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) set_effects(joints_[k]);
     assemble(group);
-    for (int round = 0; round < most_rounds; ++round) {
-        const bool changed = find_laws(group, round >= free_rounds);
-        if (round > 0 && !changed) break;
+    for (int round = 0;; ++round) {
+        const Search search = round < free_rounds   ? Search::free
+                              : round < most_rounds ? Search::releasing
+                                                    : Search::ending;
+        if (!find_laws(group, search) && round > 0) break;
         for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) set_diagonal(k, true);
         each_row(group, [&](std::uint32_t, std::uint32_t row) { open_[row] = laws_[row].open ? 1 : 0; });
         matrix_.factorise(group.first_joint, group.last_joint, open_);
@@ -329,26 +370,53 @@ void DirectSolver<D>::solve_group(const Group& group) {
         solve_as_laid(group);
         if (misdirection(group) < small_change) break;
     }
-    if (!(misdirection(group) < most_misdirection)) project(group);
+    if (!(misdirection(group) < most_misdirection) || gains_energy(group)) project(group);
     mend(group);
-}
-
-template <int D>
-void DirectSolver<D>::relax_group(const Group& group) {
-    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) lay<false>(joints_[k]);
-    solve_as_laid(group);
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
         joints_[k].before = joints_[k].wrench;
-        note_wrench(joints_[k]);
+        joints_[k].wrench = wrench_of(joints_[k]);
     }
 }
 
-/// What the joint does in this sub-step, and how fast its coordinates are at the end of it.
+/// Brings velocities to where the bodies are now, by impulses along the directions that they have there.
 template <int D>
-void DirectSolver<D>::note_wrench(DirectJoint<D>& joint) {
+void DirectSolver<D>::relax_group(const Group& group) {
+    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
+        lay<false>(joints_[k]);
+        for (Row& row : rows_of(joints_[k])) row.middle = row.end;
+    }
+    answer_by_mass(group);
+    solve_more(group);
+    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) note_speeds(joints_[k]);
+}
+
+/// Adds to the impulses of the sub-step. Where they act along the directions in which speeds are measured,
+/// and bodies answer by their mass alone, that gives the nearest velocities that the rows allow, and never
+/// more energy, however often it is done.
+template <int D>
+void DirectSolver<D>::solve_more(const Group& group) {
+    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k)
+        add(joints_[k].wrench, -1.0 * wrench_of(joints_[k]));
+    solve_as_laid(group);
+    for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k)
+        add(joints_[k].wrench, wrench_of(joints_[k]));
+}
+
+/// What the impulses of a joint are on its bodies along the directions as laid.
+template <int D>
+auto DirectSolver<D>::wrench_of(const DirectJoint<D>& joint) const -> Side {
+    Side sum{};
+    for (int r = 0; r < joint.row_count(); ++r) {
+        const Row& row = rows_[joint.first_row + static_cast<std::uint32_t>(r)];
+        add(sum, row.impulse * row.middle);
+    }
+    return sum;
+}
+
+/// What the joint has done in this sub-step, and how fast its coordinates are at the end of it.
+template <int D>
+void DirectSolver<D>::note_speeds(DirectJoint<D>& joint) {
     const std::span<Row> rows = rows_of(joint);
-    joint.wrench = {};
-    for (const Row& row : rows) add(joint.wrench, row.impulse * row.middle);
     add(joint.total, joint.wrench);
     for (std::size_t r = 0; r < rows.size(); ++r) joint.before_speed[r] = speed(joint, rows[r]);
 }
@@ -381,16 +449,14 @@ void DirectSolver<D>::settle(const RecordView<D>& bodies, bool before_moving) {
     for (const std::uint32_t i : picked_) {
         const Group& group = groups_[i];
         gather_members(group, bodies);
-        // Impulses and speeds along the same directions take energy away, however often it is done.
         for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
-            for (Row& row : rows_of(joints_[k])) row.end = row.middle;
-        }
-        solve_as_laid(group);
-        for (std::uint32_t k = group.first_joint; k < group.last_joint && !before_moving; ++k) {
             DirectJoint<D>& joint = joints_[k];
-            add(joint.total, -1.0 * joint.wrench);
-            note_wrench(joint);
+            for (Row& row : rows_of(joint)) row.end = row.middle;
+            if (!before_moving) add(joint.total, -1.0 * joint.wrench);
         }
+        solve_more(group);
+        for (std::uint32_t k = group.first_joint; k < group.last_joint && !before_moving; ++k)
+            note_speeds(joints_[k]);
         scatter_members(group, bodies, false);
     }
 }

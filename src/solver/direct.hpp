@@ -67,7 +67,7 @@ class DirectSolver {
         Weight<D, double> weight{};
         Vec<D> given{};  ///< change of velocity by the joints in this sub-step
         Angular<D> given_spin{};
-        Vec<D> wanted{};  ///< impulse of the joints on it along the directions as laid
+        Vec<D> wanted{};  ///< impulse of the joints on it along the directions as laid, or a way to go
         Angular<D> wanted_spin{};
         Vec<D> free{};  ///< velocity without the joints
         Angular<D> free_spin{};
@@ -99,8 +99,15 @@ class DirectSolver {
     /// zero.
     struct VectorRows {
         int first = 0, count = 0;
-        Symmetric3<double> inverse{}, compliance{};
+        Symmetric3<double> compliance{}, alone{};
         Vec3 speed{}, impulse{}, offset{};
+    };
+
+    /// What rows may do when it is looked anew for which of them hold.
+    enum class Search {
+        free,       ///< anything
+        releasing,  ///< let go, but not take hold
+        ending,     ///< the same, and what does not hold stays as it is: so there is an end
     };
 
     void add_group(const JointInput<D>& input, std::span<const std::uint32_t> joints);
@@ -108,26 +115,32 @@ class DirectSolver {
 
     void solve_group(const Group& group);
     void relax_group(const Group& group);
-    void note_wrench(DirectJoint<D>& joint);
+    void solve_more(const Group& group);
+    Side wrench_of(const DirectJoint<D>& joint) const;
+    void note_speeds(DirectJoint<D>& joint);
     void solve_as_laid(const Group& group);
     void gather_members(const Group& group, const RecordView<D>& bodies);
     void scatter_members(const Group& group, const RecordView<D>& bodies, bool moved) const;
     template <bool biased>
     void lay(DirectJoint<D>& joint);
     void stiffen(const Group& group);
+    void answer_by_mass(const Group& group);
     void stiffen_by(const DirectJoint<D>& joint, const JointArms<D>& arms);
     void take_back(const Group& group);
+    bool gains_energy(const Group& group);
+    bool is_driven(std::uint32_t node, std::uint32_t row) const;
     void project(const Group& group);
+    void sum_wanted(const Group& group);
     void re_aim(const Group& group);
     double misdirection(const Group& group) const;
     void set_effects(const DirectJoint<D>& joint);
     void assemble(const Group& group);
     void weigh(std::uint32_t node);
     double side_product(const Tie& tie, std::uint32_t row, std::uint32_t column) const;
-    bool find_laws(const Group& group, bool releasing);
-    bool find_drive_law(std::uint32_t node, int drive, bool releasing);
-    bool find_spring_law(std::uint32_t node, int part, bool releasing);
-    bool set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, bool releasing);
+    bool find_laws(const Group& group, Search search);
+    bool find_drive_law(std::uint32_t node, int drive, Search search);
+    bool find_spring_law(std::uint32_t node, int part, Search search);
+    bool set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, Search search);
     void split_friction(std::uint32_t node);
     VectorRows look_at(std::uint32_t node, int part) const;
     void set_diagonal(std::uint32_t node, bool with_springs);
@@ -141,13 +154,16 @@ class DirectSolver {
             for (std::uint32_t row = first; row < first + count; ++row) visit(k, row);
         }
     }
-    double own(std::uint32_t node, int row, int column) const {
-        constexpr auto n = static_cast<std::uint32_t>(DirectJoint<D>::most_rows);
-        return own_[(node * n + static_cast<std::uint32_t>(row)) * n + static_cast<std::uint32_t>(column)];
+    double own(std::uint32_t node, int row, int column) const { return own_[place(node, row, column)]; }
+    double alone(std::uint32_t node, int row, int column) const { return alone_[place(node, row, column)]; }
+    static std::size_t place(std::uint32_t node, int row, int column) {
+        constexpr std::size_t n = DirectJoint<D>::most_rows;
+        return (node * n + static_cast<std::size_t>(row)) * n + static_cast<std::size_t>(column);
     }
     void set_impulse(DirectJoint<D>& joint, std::uint32_t row, double impulse);
     void solve_rows(const Group& group);
     void mend(const Group& group);
+    void shift(const Group& group, double reach);
     void keep_impulses(DirectJoint<D>& joint);
     double speed(const DirectJoint<D>& joint, const Row& row) const;
     std::span<Row> rows_of(const DirectJoint<D>& joint) {
@@ -167,6 +183,7 @@ class DirectSolver {
     std::vector<JointArms<D>> arms_;  ///< by joint
     std::vector<RowLaw> laws_;
     std::vector<double> own_;  ///< by joint, `most_rows` squared: its block on the diagonal, without springs
+    std::vector<double> alone_;  ///< the same of parts with springs, if bodies answer by their mass alone
     std::vector<std::uint8_t> open_;
     std::vector<double> right_;
 };

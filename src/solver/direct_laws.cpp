@@ -10,9 +10,10 @@
 namespace carom::detail {
 
 template <int D>
-bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, bool releasing) {
+bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLaw& law, Search search) {
     RowLaw& old = laws_[row];
-    if (releasing && law.is_firm() && !old.is_firm()) return false;
+    if (search != Search::free && law.is_firm() && !old.is_firm()) return false;
+    if (search == Search::ending && !old.is_firm()) return false;
     // Friction that slides turns a little with every round; that is followed without solving all again.
     const double moved = std::fabs(old.given - law.given);
     const bool changed = old.open != law.open || old.softness != law.softness ||
@@ -23,31 +24,38 @@ bool DirectSolver<D>::set_law(std::uint32_t node, std::uint32_t row, const RowLa
     return changed;
 }
 
-/// Returns whether any row is to be solved otherwise than before. While `releasing`, limits, motors and
-/// friction may let go but not take hold: that comes to an end.
+/// Returns whether any row is to be solved otherwise than before.
 template <int D>
-bool DirectSolver<D>::find_laws(const Group& group, bool releasing) {
+bool DirectSolver<D>::find_laws(const Group& group, Search search) {
     bool changed = false;
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
         const DirectJoint<D>& joint = joints_[k];
         for (int part = 0; part < 2; ++part) {
-            if (joint.is_held(part) && find_spring_law(k, part, releasing)) changed = true;
+            if (joint.is_held(part) && find_spring_law(k, part, search)) changed = true;
         }
         for (int i = 0; i < joint.rows().drive_count; ++i) {
-            if (find_drive_law(k, i, releasing)) changed = true;
+            if (find_drive_law(k, i, search)) changed = true;
         }
     }
     return changed;
 }
 
 template <int D>
-bool DirectSolver<D>::find_drive_law(std::uint32_t node, int drive, bool releasing) {
+bool DirectSolver<D>::find_drive_law(std::uint32_t node, int drive, Search search) {
     const DirectJoint<D>& joint = joints_[node];
     const int r = joint.first_drive() + drive;
     const std::uint32_t row = joint.first_row + static_cast<std::uint32_t>(r);
     const DriveLaw law = drive_law(joint, drive, rows_[row].coordinate, step_);
-    return set_law(node, row, law.piece_at(speed(joint, rows_[row]), rows_[row].impulse, own(node, r, r)),
-                   releasing);
+    const RowLaw& old = laws_[row];
+    const auto piece = [&](const DriveLaw& of) {
+        return of.piece_at(speed(joint, rows_[row]), rows_[row].impulse, own(node, r, r), alone(node, r, r));
+    };
+    RowLaw next = piece(law);
+    // A limit that pulls lets go, even where that impulse would carry the joint beyond the other one.
+    if (search != Search::free && !law.two_way && old.is_firm() && next.is_firm() &&
+        next.speed_wanted != old.speed_wanted)
+        next = piece(law.let_go());
+    return set_law(node, row, next, search);
 }
 
 template <int D>
@@ -56,12 +64,15 @@ auto DirectSolver<D>::look_at(std::uint32_t node, int part) const -> VectorRows 
     VectorRows v;
     v.first = part == 0 ? 0 : joint.linear_rows();
     v.count = part == 0 ? joint.linear_rows() : joint.angular_rows();
-    const auto k = [&](int r, int c) {
-        if (r < v.count && c < v.count) return own(node, v.first + r, v.first + c);
-        return r == c ? 1.0 : 0.0;
+    const auto block = [&](auto&& element) -> Symmetric3<double> {
+        const auto k = [&](int r, int c) {
+            if (r < v.count && c < v.count) return element(v.first + r, v.first + c);
+            return r == c ? 1.0 : 0.0;
+        };
+        return {k(0, 0), k(1, 1), k(2, 2), k(0, 1), k(0, 2), k(1, 2)};
     };
-    v.compliance = {k(0, 0), k(1, 1), k(2, 2), k(0, 1), k(0, 2), k(1, 2)};
-    v.inverse = inverse_or_zero(v.compliance);
+    v.compliance = block([&](int r, int c) { return own(node, r, c); });
+    v.alone = block([&](int r, int c) { return alone(node, r, c); });
     for (int i = 0; i < v.count; ++i) {
         const Row& row = rows_[joint.first_row + static_cast<std::uint32_t>(v.first + i)];
         v.speed[i] = speed(joint, row);
@@ -82,20 +93,24 @@ void take(const Vec3& from, double& to) { to = from.x; }
 
 /// A spring, and in turns friction, of limited size.
 template <int D>
-bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part, bool releasing) {
+bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part, Search search) {
     DirectJoint<D>& joint = joints_[node];
     const VectorRows v = look_at(node, part);
     const SpringRow<float>& spring = joint.spring_of(part);
     const double keep = spring.keep, most = spring.most;
     const Vec3 rubbed = part == 1 ? as_vector(joint.rubbed) : Vec3{}, old = v.impulse - rubbed;
-    const Vec3 whole = keep * (old - v.inverse * (v.offset + v.speed));
+    Vec3 whole{};
+    if (keep > 0)
+        whole = inverse_or_zero(v.compliance + v.alone * ((1 - keep) / keep)) *
+                (v.compliance * old - v.offset - v.speed);
     const Vec3 next = cut_to(whole, most);
     const bool is_elastic = keep > 0 && dot(whole, whole) <= most * most;
     bool sticks = false;
     Vec3 rub{};
     if (part == 1 && joint.friction > 0) {
         // What turns the other way tries first whether it sticks (see `DriveLaw::piece_at`).
-        const Vec3 wanted = rubbed - 0.01 * (v.inverse * (v.speed + v.compliance * (next - old)));
+        const Vec3 wanted =
+            rubbed - 0.01 * (inverse_or_zero(v.compliance) * (v.speed + v.compliance * (next - old)));
         rub = cut_to(wanted, joint.friction);
         sticks = dot(wanted, wanted) <= joint.friction * joint.friction;
         take(rub, joint.rubbed);
@@ -110,7 +125,7 @@ bool DirectSolver<D>::find_spring_law(std::uint32_t node, int part, bool releasi
             law.given = is_elastic ? rub[i] : rub[i] + next[i];
         }
         const std::uint32_t row = joint.first_row + static_cast<std::uint32_t>(v.first + i);
-        if (set_law(node, row, law, releasing)) changed = true;
+        if (set_law(node, row, law, search)) changed = true;
     }
     return changed;
 }
@@ -124,12 +139,12 @@ void DirectSolver<D>::split_friction(std::uint32_t node) {
     if (!law.open || law.softness != 0) return;
     const VectorRows v = look_at(node, 1);
     const double keep = joint.angular_spring.keep;
-    const Vec3 sprung = -keep / (1 - keep) * (v.inverse * v.offset);
+    const Vec3 sprung = -keep / (1 - keep) * (inverse_or_zero(v.alone) * v.offset);
     take(v.impulse - cut_to(sprung, static_cast<double>(joint.angular_spring.most)), joint.rubbed);
 }
 
-#define CAROM_INSTANTIATE(D)                                      \
-    template bool DirectSolver<D>::find_laws(const Group&, bool); \
+#define CAROM_INSTANTIATE(D)                                        \
+    template bool DirectSolver<D>::find_laws(const Group&, Search); \
     template void DirectSolver<D>::split_friction(std::uint32_t);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)

@@ -51,6 +51,7 @@ void DirectSolver<D>::plan(const JointInput<D>& input, std::span<const std::uint
     open_.assign(matrix_.rows(), 1);
     constexpr std::size_t n = DirectJoint<D>::most_rows;
     own_.assign(joints_.size() * n * n, 0);
+    alone_.assign(joints_.size() * n * n, 0);
     arms_.assign(joints_.size(), {});
     right_.assign(matrix_.rows(), 0);
 }

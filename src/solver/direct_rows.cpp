@@ -142,9 +142,8 @@ void DirectJoint<D>::set_offsets(std::span<const DirectRow<D>> all) {
     for (int r = 0; r < row_count(); ++r) {
         const int part = part_of(r);
         const auto i = static_cast<std::size_t>(r);
-        if (part < 2 && !is_held(part)) continue;
+        if (!is_sprung(part)) continue;
         const SpringRow<double> spring = widen(spring_of(part));
-        if (spring.keep == 0) continue;
         const double rest = part < 2 ? 0.0 : drives[static_cast<std::size_t>(part - 2)].rest;
         offset[i] = spring.pull / spring.keep * (all[i].coordinate - rest) + before_speed[i];
     }
@@ -329,9 +328,9 @@ DriveLaw drive_law(const DirectJoint<D>& joint, int drive, double coordinate, co
 /// Where the law of spring and motor, which pushes with `motor`, meets the line along which the speed changes
 /// by `slope` for an impulse.
 DriveLaw::Point DriveLaw::with_spring(double motor, double speed, double impulse, double slope,
-                                      double compliance) const {
+                                      double alone) const {
     if (softness == 0) return {speed + slope * (motor - impulse), {false, 0, 0, motor}};
-    const double soft = softness * compliance;
+    const double soft = softness * alone;
     const double at = (speed + slope * (spring_speed / soft + motor - impulse)) / (1 + slope / soft);
     const double force = (spring_speed - at) / soft;
     if (std::fabs(force) <= spring_most) return {at, {true, softness, spring_speed, motor}};
@@ -342,11 +341,11 @@ DriveLaw::Point DriveLaw::with_spring(double motor, double speed, double impulse
 /// Any slope finds the piece in the end. With a steep one a motor that has to let go or turn round tries
 /// first whether it holds; with a flat one a limit takes hold only where the speed itself leaves its range,
 /// and not where the impulse of another piece would throw a joint that stood alone.
-RowLaw DriveLaw::piece_at(double speed, double impulse, double compliance) const {
+RowLaw DriveLaw::piece_at(double speed, double impulse, double compliance, double alone) const {
     constexpr double steep = 100, flat = 1e-3;
     if (two_way) return {true, 0, 0, 0};
     const auto meet = [&](double motor, double slope) {
-        return with_spring(motor, speed, impulse, slope * compliance, compliance);
+        return with_spring(motor, speed, impulse, slope * compliance, alone);
     };
     double motor = motor_most;
     bool sticks = false;
@@ -358,6 +357,13 @@ RowLaw DriveLaw::piece_at(double speed, double impulse, double compliance) const
     if (has_limits && p.speed < low) return {true, 0, low, 0};
     if (has_limits && p.speed > high) return {true, 0, high, 0};
     return p.law;
+}
+
+DriveLaw DriveLaw::let_go() const {
+    DriveLaw free = *this;
+    free.has_limits = false;
+    free.motor_most = 0;
+    return free;
 }
 
 #define CAROM_INSTANTIATE(D)                                                                     \

@@ -26,7 +26,7 @@ struct DirectRow {
 struct RowLaw {
     bool open = true;
     double softness =
-        0;  ///< compliance, in parts of that of the row itself (of a spring in space: of its block)
+        0;  ///< compliance, in parts of that of the row alone (of a spring in space: of its block)
     double speed_wanted = 0;
     double given = 0;
 
@@ -43,14 +43,17 @@ struct DriveLaw {
     double softness = 0, spring_speed = 0, spring_most = 0;  ///< no spring where the softness is zero
 
     /// The piece of the law that is to be tried next, for a row that has this speed and impulse now.
-    RowLaw piece_at(double speed, double impulse, double compliance) const;
+    /// What bodies answer to an impulse is `compliance`, or `alone` by their masses.
+    RowLaw piece_at(double speed, double impulse, double compliance, double alone) const;
+    /// Without what can hold a coordinate.
+    DriveLaw let_go() const;
 
   private:
     struct Point {
         double speed = 0;
         RowLaw law;
     };
-    Point with_spring(double motor, double speed, double impulse, double slope, double compliance) const;
+    Point with_spring(double motor, double speed, double impulse, double slope, double alone) const;
 };
 
 /// A joint among those that are solved directly.
@@ -99,6 +102,7 @@ struct DirectJoint {
     bool is_held(int part) const {
         return part == 0 ? rows().linear == LinearPart::held : rows().angular == AngularPart::held;
     }
+    bool is_sprung(int part) const { return (part >= 2 || is_held(part)) && spring_of(part).keep > 0; }
     int first_drive() const { return linear_rows() + angular_rows(); }
     bool is_rigid() const;  ///< does every row hold at all times?
 

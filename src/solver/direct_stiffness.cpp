@@ -10,6 +10,8 @@ namespace carom::detail {
 
 namespace {
 
+constexpr double most_gain = 3e-3;  ///< of kinetic energy, by rows that drive nothing
+
 Vec<2> times(const Symmetric3<double>& m, const Vec<2>& v) {
     return {m.xx * v.x + m.xy * v.y, m.xy * v.x + m.yy * v.y};
 }
@@ -37,13 +39,25 @@ Symmetric3<double> inverse_with(const Symmetric3<double>& w, const Symmetric3<do
     return w * (1 / (1 + trace(g) * trace(w)));
 }
 
+// What changes a velocity by v, where the inverse of the mass or inertia is w.
+
 template <int D>
-Vec<D> share(const Vec<D>& w, const Symmetric3<double>& answer, const Vec<D>& v) {
+Vec<D> momentum(const Vec<D>& w, const Vec<D>& v) {
     Vec<D> impulse{};
     for (int i = 0; i < D; ++i) impulse[i] = w[i] > 0 ? v[i] / w[i] : 0;
-    return times(answer, impulse);
+    return impulse;
 }
-double share(double w, double answer, double v) { return w > 0 ? answer / w * v : 0; }
+double momentum(double w, double v) { return w > 0 ? v / w : 0; }
+Vec3 momentum(const Symmetric3<double>& w, const Vec3& v) {
+    if (is_positive_definite(w)) return inverse(w) * v;
+    return trace(w) > 0 ? 1 / trace(w) * v : Vec3{};
+}
+
+template <int D>
+Vec<D> share(const Vec<D>& w, const Symmetric3<double>& answer, const Vec<D>& v) {
+    return times(answer, momentum(w, v));
+}
+double share(double w, double answer, double v) { return answer * momentum(w, v); }
 Vec3 share(const Symmetric3<double>& w, const Symmetric3<double>& answer, const Vec3& v) {
     if (is_positive_definite(w)) return answer * (inverse(w) * v);
     return trace(w) > 0 ? trace(answer) / trace(w) * v : Vec3{};
@@ -131,6 +145,16 @@ void DirectSolver<D>::stiffen(const Group& group) {
     }
 }
 
+/// Lets bodies answer as they are.
+template <int D>
+void DirectSolver<D>::answer_by_mass(const Group& group) {
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        Member& m = members_[i];
+        m.answer = inverse_with(m.weight.mass, {});
+        m.turn_answer = m.weight.inertia;
+    }
+}
+
 /// Takes back what the joints gave the bodies in the sub-step before. It was good to say where they go; but
 /// what is so stiff that the directions are not found would keep it, and be driven by it.
 template <int D>
@@ -146,22 +170,27 @@ void DirectSolver<D>::take_back(const Group& group) {
     }
 }
 
-/// What the joints have given the bodies becomes what their impulses are along the directions as laid.
+/// Sums up what the impulses of the joints are on the bodies along the directions as laid.
 template <int D>
-void DirectSolver<D>::re_aim(const Group& group) {
+void DirectSolver<D>::sum_wanted(const Group& group) {
     for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
         members_[i].wanted = {};
         members_[i].wanted_spin = {};
     }
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
         Member &a = members_[joints_[k].a], &b = members_[joints_[k].b];
-        Wrench<D, double> w{};
-        for (const Row& row : rows_of(joints_[k])) add(w, row.impulse * row.middle);
+        const Side w = wrench_of(joints_[k]);
         a.wanted -= w.force;
         a.wanted_spin = a.wanted_spin - w.on_a;
         b.wanted += w.force;
         b.wanted_spin = b.wanted_spin + w.on_b;
     }
+}
+
+/// What the joints have given the bodies becomes what their impulses are along the directions as laid.
+template <int D>
+void DirectSolver<D>::re_aim(const Group& group) {
+    sum_wanted(group);
     for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
         Member& m = members_[i];
         const Vec<D> change = share(m.weight.mass, m.answer, each(m.weight.mass, m.wanted) - m.given);
@@ -186,12 +215,53 @@ double DirectSolver<D>::misdirection(const Group& group) const {
     return step_.h * std::sqrt(most);
 }
 
+/// Is it a motor that holds the row at its speed?
+template <int D>
+bool DirectSolver<D>::is_driven(std::uint32_t node, std::uint32_t row) const {
+    const DirectJoint<D>& joint = joints_[node];
+    const int part = joint.part_of(static_cast<int>(row - joint.first_row));
+    if (part < 2 || laws_[row].speed_wanted == 0) return false;
+    const DriveBase<D, float>& drive = joint.drives[static_cast<std::size_t>(part - 2)];
+    return drive.motor_most > 0 && laws_[row].speed_wanted == drive.motor_speed;
+}
+
+/// Was there energy from nowhere? What an impulse does is its product with the mean of the speeds along its
+/// direction before and after. Nothing is to come from rows that drive nothing, nor from what bodies were
+/// given otherwise than the impulses say, as long as directions were not found.
+template <int D>
+bool DirectSolver<D>::gains_energy(const Group& group) {
+    double gained = 0, kinetic = 0;
+    each_row(group, [&](std::uint32_t node, std::uint32_t row) {
+        if (!laws_[row].is_firm() || is_driven(node, row)) return;
+        const Member &a = members_[joints_[node].a], &b = members_[joints_[node].b];
+        const Side& w = rows_[row].middle;
+        const double twice = dot(w.force, (b.motion.v + b.free) - (a.motion.v + a.free)) +
+                             angular_dot(w.on_b, Angular<D>(b.motion.w + b.free_spin)) -
+                             angular_dot(w.on_a, Angular<D>(a.motion.w + a.free_spin));
+        gained += 0.5 * rows_[row].impulse * twice;
+    });
+    sum_wanted(group);
+    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
+        const Member& m = members_[i];
+        const Vec<D> astray = m.given - each(m.weight.mass, m.wanted);
+        const Angular<D> astray_spin = m.given_spin - m.weight.inertia * m.wanted_spin;
+        gained +=
+            0.5 * dot(momentum(m.weight.mass, astray), m.motion.v + m.free) +
+            0.5 * angular_dot(momentum(m.weight.inertia, astray_spin), Angular<D>(m.motion.w + m.free_spin));
+        kinetic += 0.5 * dot(momentum(m.weight.mass, m.free), m.free) +
+                   0.5 * angular_dot(momentum(m.weight.inertia, m.free_spin), m.free_spin);
+    }
+    return !(gained <= most_gain * kinetic);
+}
+
 #define CAROM_INSTANTIATE(D)                                           \
     template void DirectSolver<D>::set_effects(const DirectJoint<D>&); \
     template void DirectSolver<D>::stiffen(const Group&);              \
+    template void DirectSolver<D>::answer_by_mass(const Group&);       \
     template void DirectSolver<D>::take_back(const Group&);            \
     template void DirectSolver<D>::re_aim(const Group&);               \
-    template double DirectSolver<D>::misdirection(const Group&) const;
+    template double DirectSolver<D>::misdirection(const Group&) const; \
+    template bool DirectSolver<D>::gains_energy(const Group&);
 CAROM_INSTANTIATE(2)
 CAROM_INSTANTIATE(3)
 #undef CAROM_INSTANTIATE

@@ -82,7 +82,8 @@ bool ImpactSolver<D>::find_candidates(const ImpactView<D>& view) {
             const float pull = std::fabs(dot(rows.normal, db.acceleration - da.acceleration)) * step;
             for (const NormalRow<D, float>& p : rows.points) {
                 if (!(p.mass > 0)) continue;
-                const float speed = pull - dot(rows.normal, relative_velocity(ma, mb, p.arm_a, p.arm_b));
+                const float speed =
+                    pull - dot(rows.normal, relative_velocity(ma, mb, arm_a(rows, p), arm_b(rows, p)));
                 if (speed <= threshold || p.separation > 1.5f * speed * step + 1e-3f) continue;
                 candidates_.push_back({store.contact(index), section, index});
                 break;
@@ -202,8 +203,8 @@ template <int D>
 double ImpactSolver<D>::speed_at(const Point& p, double time) const {
     const Contact& c = contacts_[p.contact];
     const NormalRow<D, double>& row = c.rows.points[p.number];
-    return dot(c.rows.normal,
-               relative_velocity(at(flights_[c.a], time), at(flights_[c.b], time), row.arm_a, row.arm_b));
+    return dot(c.rows.normal, relative_velocity(at(flights_[c.a], time), at(flights_[c.b], time),
+                                                arm_a(c.rows, row), arm_b(c.rows, row)));
 }
 
 /// When, from a time on, the point is struck so that it may bounce or its body is thrown against something;
@@ -332,8 +333,8 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
         const auto approach = [&](std::uint32_t k) {
             const Contact& c = contacts_[points_[k].contact];
             const NormalRow<D, double>& row = c.rows.points[points_[k].number];
-            return -dot(c.rows.normal,
-                        relative_velocity(bodies_[c.a].motion, bodies_[c.b].motion, row.arm_a, row.arm_b));
+            return -dot(c.rows.normal, relative_velocity(bodies_[c.a].motion, bodies_[c.b].motion,
+                                                         arm_a(c.rows, row), arm_b(c.rows, row)));
         };
         double fastest = 0;
         for (const std::uint32_t k : touching_) fastest = std::max(fastest, approach(k));
@@ -350,9 +351,9 @@ void ImpactSolver<D>::run_rounds(double time, double speed, const ImpactView<D>&
             strikes_.push_back({c.a,
                                 c.b,
                                 c.rows.normal,
-                                row.arm_a,
-                                row.arm_b,
-                                tangents_of(c.rows),
+                                arm_a(c.rows, row),
+                                arm_b(c.rows, row),
+                                frame_of(c.rows).tangents,
                                 c.rows.surface_speed,
                                 restitution,
                                 c.rows.friction,

@@ -21,14 +21,12 @@ struct JointPassesIn {
         const Motion<D, F>& m = body.motion;
         const std::uint32_t first = bodies.first_movable;
         if constexpr (D == 2) {
-            scatter_quads_from(first, bodies.records + 4, slots, body_stride<2>, m.moved.x, m.moved.y,
-                               m.turned, body.weight.inertia);
+            scatter_record_from(first, bodies.records + 4, slots, body_stride<2>, m.moved.x, m.moved.y,
+                                m.turned, body.weight.inertia);
         } else {
             const Symmetric3<F>& i = body.weight.inertia;
-            scatter_quads_from(first, bodies.records + 8, slots, body_stride<3>, m.moved.x, m.moved.y,
-                               m.moved.z, i.yy);
-            scatter_quads_from(first, bodies.records + 12, slots, body_stride<3>, m.turned.x, m.turned.y,
-                               m.turned.z, i.zz);
+            scatter_record_from(first, bodies.records + 8, slots, body_stride<3>, m.moved.x, m.moved.y,
+                                m.moved.z, i.yy, m.turned.x, m.turned.y, m.turned.z, i.zz);
         }
     }
 

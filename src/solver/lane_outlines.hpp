@@ -38,12 +38,12 @@ struct LaneOutline {
 template <class F>
 CAROM_INLINE void gather_outline(const float* shapes, const std::uint32_t* index, LaneOutline<F>& o) {
     constexpr std::size_t stride = LaneShapes<2>::stride;
-    gather_quads(shapes, index, stride, o.count, o.radius, o.body_radius, o.kind);
+    gather_record(shapes, index, stride, o.count, o.radius, o.body_radius, o.kind);
     o.n = 2;
     while (o.n < o.most && any(o.count > F(static_cast<float>(o.n)))) ++o.n;
     for (int i = 0; i < o.n; ++i)
-        gather_quads(shapes + 4 * (i + 1), index, stride, o.corners[i].x, o.corners[i].y, o.normals[i].x,
-                     o.normals[i].y);
+        gather_record(shapes + 4 * (i + 1), index, stride, o.corners[i].x, o.corners[i].y, o.normals[i].x,
+                      o.normals[i].y);
 }
 
 template <class Mask, class F>

@@ -141,28 +141,24 @@ double spin_energy(const BodyMass<3>& mass, const Rotation3& rotation, const Vec
     return dot(local, mass.inertia * local);
 }
 
-/// The solver has a body's inertia as it lay at the start of the step. Where the body is then turned far, by
-/// other bodies and not as its spin would by itself, a spin about its thin axis becomes one about a thick
-/// one, with many times the energy. So what is much more than it had before and after the impulses is taken
-/// off.
-void keep_energy(const BodyState<3>& before, const BodyMass<3>& mass, const Vec3& turned, const Vec3& solved,
+/// The solver has a body's inertia as it lay at the start of the step. Where the body is then turned by other
+/// bodies, and not as its spin would by itself, momentum about a thick axis becomes momentum about a thin
+/// one, with many times the energy. So what is more than it had before and after the impulses is taken off.
+void keep_energy(const BodyState<3>& before, const BodyMass<3>& mass, const Vec3& solved,
                  BodyState<3>& after) {
-    constexpr double far = 0.5, much = 1.05;  // rad
-    if (!(dot(turned, turned) > far * far)) return;
     const double most = std::max(spin_energy(mass, before.rotation, before.angular_velocity),
                                  spin_energy(mass, before.rotation, solved));
     const double now = spin_energy(mass, after.rotation, after.angular_velocity);
-    if (now > much * most) after.angular_velocity *= std::sqrt(most / now);
+    if (now > most) after.angular_velocity *= std::sqrt(most / now);
 }
 
 /// What the solver left of a spin becomes that of the body at its new place.
-void settle_spin(const BodyState<3>& before, const BodyMass<3>& mass, double step, const Vec3& turned,
-                 BodyState<3>& after) {
+void settle_spin(const BodyState<3>& before, const BodyMass<3>& mass, double step, BodyState<3>& after) {
     const Vec3 solved = after.angular_velocity;
     keep_momentum(before, mass, step, after);
-    keep_energy(before, mass, turned, solved, after);
+    keep_energy(before, mass, solved, after);
 }
-void settle_spin(const BodyState<2>&, const BodyMass<2>&, double, double, BodyState<2>&) {}
+void settle_spin(const BodyState<2>&, const BodyMass<2>&, double, BodyState<2>&) {}
 
 }  // namespace
 
@@ -191,7 +187,7 @@ void Solver<D>::store_body(const SolverInput<D>& input, std::uint32_t slot) cons
     state.velocity = narrow<double>(m.v) + narrow<double>(drive.lost);
     state.angular_velocity = narrow<double>(m.w) + narrow<double>(drive.lost_spin);
     if (mass.isotropic || mass.inverse_mass == 0) return;
-    settle_spin(before, mass, input.step, narrow<double>(m.turned), state);
+    settle_spin(before, mass, input.step, state);
 }
 
 #define CAROM_INSTANTIATE(D)                                                  \

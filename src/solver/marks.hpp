@@ -5,7 +5,7 @@
 
 #include "dynamics/body.hpp"
 #include "math/dim.hpp"
-#include "solver/rows.hpp"
+#include "solver/contact_rows.hpp"
 
 /// Manifolds that outlive a step, in lanes. As long as two bodies hardly move against each other, the points
 /// found when their shapes were last collided are carried along with them (see dynamics/contact_cache.hpp).
@@ -33,6 +33,9 @@ struct ContactMarks {
     F can_be_remade{};  ///< 1 if both shapes are for lanes, which then make the manifold anew; else 0
     F is_newer{};       ///< 1 if they have done so since the contact was written; else 0
 };
+
+/// Where a point is marked whose place on the bodies is not known: it is found again by its feature alone.
+constexpr float unknown_place = 1e6f;
 
 /// The separation of a point that is not there.
 constexpr float no_separation = 1e30f;
@@ -143,30 +146,37 @@ CAROM_INLINE auto refresh(ContactRows<D, F>& rows, const ContactMarks<D, F>& mar
     const Rotation<D, F> axes = narrowed<F>(a.rotation), axes_b = narrowed<F>(b.rotation);
     const auto of_b = marks.is_of_b > F(0.5f);
     const Vec<D, F> friction = along_tangents(rows, rows.friction_impulse);
-    rows.normal = rotate(selected(of_b, axes_b, axes), marks.normal);
+    set_normal(rows, rotate(selected(of_b, axes_b, axes), marks.normal));
     const Vec<D, F> turned = unrotate(axes, rows.normal);
-    Vec<D, F> normal;  // in a's axes
-    for (int i = 0; i < D; ++i) normal[i] = select(of_b, turned[i], marks.normal[i]);
-    const auto t = tangents<D>(rows.normal);
-    rows.tangent = t[0];
+    ContactFrame<D, F> frame;  // in a's axes
+    for (int i = 0; i < D; ++i) frame.normal[i] = select(of_b, turned[i], marks.normal[i]);
+    if constexpr (D == 2) {
+        frame.tangents = tangents<2>(frame.normal);
+    } else {
+        frame.tangents[0] = unrotate(axes, rows.tangent);
+        frame.tangents[1] = cross(frame.normal, frame.tangents[0]);
+    }
+    const auto t = frame_of(rows).tangents;
     for (int i = 0; i < D - 1; ++i) {
         rows.friction_impulse[i] = dot(friction, t[i]);
         rows.total_friction[i] = F(0);
     }
     F most_used = F(0);
+    std::array<Vec<D, F>, max_points<D>> arms_a, arms_b;
     for (int k = 0; k < max_points<D>; ++k) {
         const auto& mark = marks.points[k];
         NormalRow<D, F>& p = rows.points[k];
         const Vec<D, F> parted = way + way_of<D>(angle, mark.on_b);
-        p.separation = mark.separation + dot(normal, parted);
-        p.arm_a = rotate(axes, Vec<D, F>(mark.on_a + F(0.5f) * parted));
-        p.arm_b = rotate(axes, Vec<D, F>(mark.on_b - way + F(0.5f) * parted));
+        p.separation = mark.separation + dot(frame.normal, parted);
+        arms_a[k] = mark.on_a + F(0.5f) * parted;
+        arms_b[k] = mark.on_b - way + F(0.5f) * parted;
         const F used = select(p.separation > reach, F(0), F(1));
         most_used = maximum(most_used, used);
         p.mass = select(holds, used, p.mass);
         p.impulse = select(both(holds, F(0.5f) > used), F(0), p.impulse);
         p.total_impulse = F(0);
     }
+    place_points(rows, frame, arms_a, arms_b);
     return !both(holds, most_used > F(0));
 }
 

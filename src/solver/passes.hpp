@@ -7,10 +7,10 @@
 #include "solver/apart.hpp"
 #include "solver/body_records.hpp"
 #include "solver/body_source.hpp"
+#include "solver/contact_rows.hpp"
 #include "solver/drive.hpp"
 #include "solver/marks.hpp"
 #include "solver/prepare.hpp"
-#include "solver/rows.hpp"
 
 namespace carom::detail {
 
@@ -20,7 +20,8 @@ enum Trait : std::uint8_t {
     some_round = 2,
     some_rolling = 4,
     some_bouncy = 8,
-    some_in_flight = 16,  ///< as `prepare` found it
+    some_belts = 16,
+    some_in_flight = 32,  ///< as `prepare` found it
 };
 
 /// Blocks of contacts, to be solved in this order. The contacts of a block share no body that can be pushed.
@@ -29,7 +30,7 @@ struct BlockSpan {
     float* rows = nullptr;   ///< of `ContactRows<D, F>`
     float* marks = nullptr;  ///< of `ContactMarks<D, F>`; the solving passes do without
     const std::uint32_t* a = nullptr;
-    const std::uint32_t* b = nullptr;       ///< slots of the bodies, one a lane
+    const std::uint32_t* b = nullptr;       ///< records of the bodies, one a lane; see `record_of`
     const std::uint32_t* body_a = nullptr;  ///< their indices in the world
     const std::uint32_t* body_b = nullptr;
     const std::uint32_t* shape_a = nullptr;  ///< in `LaneShapes`
@@ -78,12 +79,11 @@ struct Passes {
     /// The records have to hold the change of velocity in place of the velocity and the acceleration by outer
     /// forces in place of the way.
     void (*look_ahead)(const BlockSpan<D>&, const RecordView<D>&, float h);
+    /// The passes with bias but without friction find the contacts that push then.
     void (*solve)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
     void (*solve_and_tally)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
     void (*solve_with_friction)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
     void (*relax)(const BlockSpan<D>&, const RecordView<D>&, const SubStep<float>&);
-    /// Finds the contacts that push.
-    void (*find_pushing)(const BlockSpan<D>&);
     void (*tally)(const BlockSpan<D>&);
     /// After the step: finds the contacts that have begun or ended to touch.
     void (*touch)(const BlockSpan<D>&);

@@ -22,20 +22,25 @@ struct PassesIn {
     }
 
     static Extras extras_of(std::uint8_t traits) {
-        return {(traits & some_round) != 0, (traits & some_rolling) != 0};
+        return {(traits & some_round) != 0, (traits & some_rolling) != 0, (traits & some_belts) != 0};
     }
 
-    /// `work(rows, a, b, extras)` for each block, with its bodies read before and written after.
+    CAROM_INLINE static void write_velocities(const RecordView<D>& bodies, const BlockSpan<D>& span,
+                                              std::size_t k, const Body<D, F>& a, const Body<D, F>& b) {
+        const bool fixed = span.traits[k] & some_fixed;
+        scatter_velocity_at<record_unit>(bodies, span.a + k * width, a, fixed);
+        scatter_velocity_at<record_unit>(bodies, span.b + k * width, b, fixed);
+    }
+
+    /// `work(block, rows, a, b, extras)` for each block, with its bodies read before and written after.
     template <class Work>
     CAROM_INLINE static void each_block(const BlockSpan<D>& span, const RecordView<D>& bodies, Work work) {
         Rows* rows = reinterpret_cast<Rows*>(span.rows);
         for (std::size_t k = 0; k < span.blocks; ++k) {
-            const std::uint32_t *slots_a = span.a + k * width, *slots_b = span.b + k * width;
-            Body<D, F> a = gather<F>(bodies, slots_a), b = gather<F>(bodies, slots_b);
-            const bool fixed = span.traits[k] & some_fixed;
-            work(rows[k], a, b, extras_of(span.traits[k]));
-            scatter_velocity(bodies, slots_a, a, fixed);
-            scatter_velocity(bodies, slots_b, b, fixed);
+            Body<D, F> a = gather_records<F>(bodies, span.a + k * width),
+                       b = gather_records<F>(bodies, span.b + k * width);
+            work(k, rows[k], a, b, extras_of(span.traits[k]));
+            write_velocities(bodies, span, k, a, b);
         }
     }
 
@@ -85,38 +90,33 @@ struct PassesIn {
     }
 
     static void prepare(const BlockSpan<D>& span, const RecordView<D>& bodies) {
-        Rows* blocks = reinterpret_cast<Rows*>(span.rows);
-        for (std::size_t k = 0; k < span.blocks; ++k) {
-            Rows& rows = blocks[k];
-            const std::uint32_t *slots_a = span.a + k * width, *slots_b = span.b + k * width;
-            Body<D, F> a = gather<F>(bodies, slots_a), b = gather<F>(bodies, slots_b);
-            const Extras extras = extras_of(span.traits[k]);
-            weigh_rows(rows, a.weight, b.weight, extras);
-            detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
-            const bool fixed = span.traits[k] & some_fixed;
-            scatter_velocity(bodies, slots_a, a, fixed);
-            scatter_velocity(bodies, slots_b, b, fixed);
-            rows.lead = F(0);
-            const bool in_flight = any(is_in_flight(rows));
-            span.traits[k] = static_cast<std::uint8_t>((span.traits[k] & ~some_in_flight) |
-                                                       (in_flight ? some_in_flight : 0));
-            span.found[k] = bits_of(both(some_used(rows), !pushes(rows)));
-        }
+        each_block(span, bodies,
+                   [&](std::size_t k, Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras)
+                       CAROM_INLINE_LAMBDA {
+                           weigh_rows(rows, a.weight, b.weight, extras);
+                           detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
+                           rows.lead = F(0);
+                           const bool in_flight = any(is_in_flight(rows));
+                           span.traits[k] = static_cast<std::uint8_t>((span.traits[k] & ~some_in_flight) |
+                                                                      (in_flight ? some_in_flight : 0));
+                           span.found[k] = bits_of(both(some_used(rows), !pushes(rows)));
+                       });
     }
 
     static void warm_start(const BlockSpan<D>& span, const RecordView<D>& bodies) {
         each_block(span, bodies,
-                   [](const Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras) CAROM_INLINE_LAMBDA {
-                       detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
-                   });
+                   [](std::size_t, const Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras)
+                       CAROM_INLINE_LAMBDA {
+                           detail::warm_start(rows, a.motion, b.motion, a.weight, b.weight, extras);
+                       });
     }
 
     static void look_ahead(const BlockSpan<D>& span, const RecordView<D>& bodies, float h) {
         Rows* rows = reinterpret_cast<Rows*>(span.rows);
         for (std::size_t k = 0; k < span.blocks; ++k) {
             if (!(span.traits[k] & some_in_flight)) continue;
-            const Body<D, F> a = gather<F>(bodies, span.a + k * width),
-                             b = gather<F>(bodies, span.b + k * width);
+            const Body<D, F> a = gather_records<F>(bodies, span.a + k * width),
+                             b = gather_records<F>(bodies, span.b + k * width);
             detail::look_ahead(rows[k], Vec<D, F>(b.motion.v - a.motion.v),
                                Vec<D, F>(b.motion.moved - a.motion.moved), F(h));
         }
@@ -126,17 +126,15 @@ struct PassesIn {
     static void solve(const BlockSpan<D>& span, const RecordView<D>& bodies, const SubStep<float>& step) {
         const SubStep<F> sub = widen(step);
         each_block(span, bodies,
-                   [&](Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras) CAROM_INLINE_LAMBDA {
-                       if constexpr (tallied) detail::tally(rows);
-                       solve_normals<biased>(rows, a.motion, b.motion, a.weight, b.weight, sub, extras);
-                       if constexpr (friction)
-                           solve_friction(rows, a.motion, b.motion, a.weight, b.weight, extras);
-                   });
-    }
-
-    static void find_pushing(const BlockSpan<D>& span) {
-        const Rows* rows = reinterpret_cast<const Rows*>(span.rows);
-        for (std::size_t k = 0; k < span.blocks; ++k) span.found[k] = bits_of(pushes(rows[k]));
+                   [&](std::size_t k, Rows& rows, Body<D, F>& a, Body<D, F>& b, Extras extras)
+                       CAROM_INLINE_LAMBDA {
+                           if constexpr (tallied) detail::tally(rows);
+                           solve_normals<biased>(rows, a.motion, b.motion, a.weight, b.weight, sub, extras);
+                           if constexpr (friction)
+                               solve_friction(rows, a.motion, b.motion, a.weight, b.weight, extras);
+                           else
+                               span.found[k] = bits_of(pushes(rows));
+                       });
     }
 
     static void touch(const BlockSpan<D>& span) {
@@ -244,7 +242,6 @@ struct PassesIn {
                                    solve<true, false, true>,
                                    solve<true, true, false>,
                                    solve<false, true, false>,
-                                   find_pushing,
                                    tally,
                                    touch,
                                    load,

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "solver/contact_rows.hpp"
 #include "solver/marks.hpp"
-#include "solver/rows.hpp"
 
 /// What the rows of a contact need beside what the narrow phase found: effective masses and the patch of
 /// friction. For any lane type, like solver/rows.hpp.
@@ -17,53 +17,49 @@ CAROM_INLINE Symmetric3<F> inverse_or_zero(const Symmetric3<F>& k) {
     return adjugate(k) * inverse_or_zero(determinant(k));
 }
 
-/// The patch of friction lies in the middle of the points that are used.
-template <int D, class F>
-CAROM_INLINE void place_patch(ContactRows<D, F>& c) {
-    F count = F(0);
-    Vec<D, F> sum_a{}, sum_b{};
-    for (const NormalRow<D, F>& p : c.points) {
-        const F used = select(p.mass > F(0), F(1), F(0));
-        count = count + used;
-        sum_a += used * p.arm_a;
-        sum_b += used * p.arm_b;
-    }
-    const F share = inverse_or_zero(count);
-    c.arm_a = share * sum_a;
-    c.arm_b = share * sum_b;
-}
-
-/// Inverse of the effective masses of the patch, which is symmetric, between its two tangents.
+/// Inverse of the effective masses of the patch, which is symmetric, between its two tangents. The inertias
+/// are those in the frame.
 template <class F>
-CAROM_INLINE void weigh_patch(ContactRows<2, F>& c, const Weight<2, F>& a, const Weight<2, F>& b) {
-    c.patch_mass[0] = inverse_or_zero(compliance(c.tangent, c.arm_a, c.arm_b, a, b));
+CAROM_INLINE void weigh_patch(ContactRows<2, F>& c, const Vec<2, F>& mass, const F& inertia_a,
+                              const F& inertia_b) {
+    const Vec<2, F> t = tangents<2>(c.normal)[0];
+    c.patch_mass[0] = inverse_or_zero(
+        dot(t, each(mass, t)) + (c.arm_a.x * c.arm_a.x * inertia_a + c.arm_b.x * c.arm_b.x * inertia_b));
 }
 template <class F>
-CAROM_INLINE void weigh_patch(ContactRows<3, F>& c, const Weight<3, F>& a, const Weight<3, F>& b) {
-    const auto [t1, t2] = tangents_of(c);
-    const Vec<3, F> a1 = cross(c.arm_a, t1), a2 = cross(c.arm_a, t2);
-    const Vec<3, F> b1 = cross(c.arm_b, t1), b2 = cross(c.arm_b, t2);
-    const Vec<3, F> mass = a.mass + b.mass, turn_a1 = a.inertia * a1, turn_b1 = b.inertia * b1;
+CAROM_INLINE void weigh_patch(ContactRows<3, F>& c, const Vec<3, F>& mass, const Symmetric3<F>& inertia_a,
+                              const Symmetric3<F>& inertia_b) {
+    const auto [t1, t2] = frame_of(c).tangents;
+    const F zero(0), one(1);
+    const Vec<3, F> a1 = torque_across(c.arm_a, one, zero), a2 = torque_across(c.arm_a, zero, one);
+    const Vec<3, F> b1 = torque_across(c.arm_b, one, zero), b2 = torque_across(c.arm_b, zero, one);
+    const Vec<3, F> turn_a1 = inertia_a * a1, turn_b1 = inertia_b * b1;
     const F k11 = dot(t1, each(mass, t1)) + dot(a1, turn_a1) + dot(b1, turn_b1);
     const F k12 = dot(t2, each(mass, t1)) + dot(a2, turn_a1) + dot(b2, turn_b1);
-    const F k22 = dot(t2, each(mass, t2)) + dot(a2, a.inertia * a2) + dot(b2, b.inertia * b2);
+    const F k22 = dot(t2, each(mass, t2)) + dot(a2, inertia_a * a2) + dot(b2, inertia_b * b2);
     const F k = inverse_or_zero(k11 * k22 - k12 * k12);
     c.patch_mass = {k22 * k, -k12 * k, k11 * k};
-    c.twist_mass = inverse_or_zero(dot(c.normal, (a.inertia + b.inertia) * c.normal));
-    for (NormalRow<3, F>& p : c.points) {
-        const Vec<3, F> arm = p.arm_a - c.arm_a;
-        p.lever = select(p.mass > F(0), square_root(dot(arm, arm)), F(0));
-    }
+    c.twist_mass = inverse_or_zero(inertia_a.xx + inertia_b.xx);
+    for (NormalRow<3, F>& p : c.points)
+        p.lever = select(p.mass > F(0), square_root(dot(p.place, p.place)), F(0));
 }
 
 /// On entry the mass of a point is positive where the point is used and zero where not.
 template <int D, class F>
 CAROM_INLINE void weigh_rows(ContactRows<D, F>& c, const Weight<D, F>& a, const Weight<D, F>& b,
                              Extras extras) {
-    place_patch(c);
-    weigh_patch(c, a, b);
-    for (NormalRow<D, F>& p : c.points)
-        p.mass = select(p.mass > F(0), inverse_or_zero(compliance(c.normal, p.arm_a, p.arm_b, a, b)), F(0));
+    const ContactFrame<D, F> frame = frame_of(c);
+    const Inertia<D, F> inertia_a = inertia_to_frame(frame, a.inertia),
+                        inertia_b = inertia_to_frame(frame, b.inertia);
+    weigh_patch(c, Vec<D, F>(a.mass + b.mass), inertia_a, inertia_b);
+    const Response<D, F> response = response_of(c, a, b, inertia_a, inertia_b);
+    if constexpr (D == 3) c.response = response;
+    for (NormalRow<D, F>& p : c.points) {
+        const Tilt<D, F> l = lever(p.place);
+        const F softness = response.straight + tilt_dot(response.mixed, l) +
+                           tilt_dot(l, Tilt<D, F>(response.mixed + response.turning * l));
+        p.mass = select(p.mass > F(0), inverse_or_zero(softness), F(0));
+    }
     const auto moves = [](const Weight<D, F>& w) {
         return maximum(w.mass[0], maximum(w.mass[1], w.mass[D - 1]));
     };

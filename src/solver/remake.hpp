@@ -42,8 +42,10 @@ CAROM_INLINE auto carried_impulses(const ContactRows<2, F>& rows, const ContactM
     for (int i = 0; i < 2; ++i) {
         const Vec<2, F> arm_a = rotate(axes, m.points[i].position), arm_b = arm_a - between;
         const auto square = [&](int k) {
-            const Vec<2, F> on_a = rows.points[k].arm_a - arm_a, on_b = rows.points[k].arm_b - arm_b;
-            return select(left[k], minimum(dot(on_a, on_a), dot(on_b, on_b)), F(1e30f));
+            const auto known = F(unknown_place) > marks.points[k].on_a.x;
+            const Vec<2, F> on_a = detail::arm_a(rows, rows.points[k]) - arm_a,
+                            on_b = detail::arm_b(rows, rows.points[k]) - arm_b;
+            return select(both(left[k], known), minimum(dot(on_a, on_a), dot(on_b, on_b)), F(1e30f));
         };
         const std::array<F, 2> squares{square(0), square(1)};
         const auto open = both(m.points[i].used > F(0.5f), !found[i]);
@@ -124,9 +126,9 @@ CAROM_INLINE Mask remake(ContactRows<2, F>& rows, ContactMarks<2, F>& marks, con
     const Mask done = both(wanted, either(in_reach(0), in_reach(1)));
 
     const Vec<2, F> friction = along_tangents(rows, rows.friction_impulse);
+    const ContactRows<2, F> before = rows;
     rows.normal = selected(done, rotate(axes, m.normal), rows.normal);
     const Vec<2, F> tangent = tangents<2>(rows.normal)[0];
-    rows.tangent = selected(done, tangent, rows.tangent);
     const F kept_friction = select(goes_on, dot(friction, tangent), F(0));
     rows.friction_impulse[0] = select(done, kept_friction, rows.friction_impulse[0]);
     rows.rolling_impulse = select(both(done, !goes_on), F(0), rows.rolling_impulse);
@@ -135,12 +137,12 @@ CAROM_INLINE Mask remake(ContactRows<2, F>& rows, ContactMarks<2, F>& marks, con
     const auto of_b = m.is_of_b > F(0.5f);
     marks.normal = selected(done, selected(of_b, unrotate(axes_b, m.normal), m.normal), marks.normal);
     marks.is_of_b = select(done, m.is_of_b, marks.is_of_b);
+    std::array<Vec<2, F>, 2> arms_a, arms_b;
     for (int k = 0; k < 2; ++k) {
         const auto& p = m.points[k];
         NormalRow<2, F>& row = rows.points[k];
-        const Vec<2, F> arm = rotate(axes, p.position);
-        row.arm_a = selected(done, arm, row.arm_a);
-        row.arm_b = selected(done, arm - between, row.arm_b);
+        arms_a[k] = rotate(axes, p.position);
+        arms_b[k] = arms_a[k] - between;
         row.separation = select(done, p.separation, row.separation);
         row.mass = select(done, select(in_reach(k), F(1), F(0)), row.mass);
         row.impulse = select(done, select(in_reach(k), impulses[k], F(0)), row.impulse);
@@ -151,6 +153,11 @@ CAROM_INLINE Mask remake(ContactRows<2, F>& rows, ContactMarks<2, F>& marks, con
             select(done, select(p.used > F(0.5f), p.separation, F(no_separation)), mark.separation);
         mark.feature = select(done, p.feature, mark.feature);
     }
+    place_points(rows, frame_of(rows), arms_a, arms_b);
+    rows.arm_a = selected(done, rows.arm_a, before.arm_a);
+    rows.arm_b = selected(done, rows.arm_b, before.arm_b);
+    for (int k = 0; k < 2; ++k)
+        rows.points[k].place = selected(done, rows.points[k].place, before.points[k].place);
     const auto is_round = outline_a.radius + outline_b.radius > F(0);
     const auto has_face = F(0.5f) > F(1) - m.is_of_a - m.is_of_b;
     const F way = select(has_face, full_way, full_way * F(reuse_without_face)), angle = way / radius;

@@ -74,7 +74,7 @@ void Solver<D>::find_impacts() {
         i.acceleration = std::clamp(steady, -most, most);
         const NormalRow<D, float>& p = rows.points[i.point];
         i.speed = dot(n, relative_velocity(gather<float>(view_, &a).motion, gather<float>(view_, &b).motion,
-                                           p.arm_a, p.arm_b));
+                                           arm_a(rows, p), arm_b(rows, p)));
     }
 }
 
@@ -108,17 +108,18 @@ void Solver<D>::bounce(const Impact& impact, const Rebound& rebound) {
     Motion<D, float>&a = body_a.motion, &b = body_b.motion;
     const Weight<D, float>&wa = body_a.weight, &wb = body_b.weight;
 
-    const float speed = dot(rows.normal, relative_velocity(a, b, p.arm_a, p.arm_b));
+    const Vec<D, float> from_a = arm_a(rows, p), from_b = arm_b(rows, p);
+    const float speed = dot(rows.normal, relative_velocity(a, b, from_a, from_b));
     const float blow = std::max(p.mass * (static_cast<float>(rebound.speed) - speed), -p.total_impulse);
     p.total_impulse += blow;
     p.impulse = 0;  // the blow is over: nothing of it belongs into the next step
-    push(a, b, wa, wb, p.arm_a, p.arm_b, blow * rows.normal);
+    push(a, b, wa, wb, from_a, from_b, blow * rows.normal);
 
     // The place: the same impulse arithmetic on displacements instead of velocities.
     const float lack = static_cast<float>(rebound.gap) - gap(rows, p, a, b);
     if (lack > 0) {
         Motion<D, float> shift_a{}, shift_b{};
-        push(shift_a, shift_b, wa, wb, p.arm_a, p.arm_b, p.mass * lack * rows.normal);
+        push(shift_a, shift_b, wa, wb, from_a, from_b, p.mass * lack * rows.normal);
         a.moved += shift_a.v;
         a.turned = a.turned + shift_a.w;
         b.moved += shift_b.v;

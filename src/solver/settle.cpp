@@ -64,7 +64,7 @@ void Solver<D>::forget_last_blows() {
             Rows rows = s.contacts.rows().get(index);
             for (NormalRow<D, float>& p : rows.points) p.impulse = 0;
             rows.friction_impulse = {};
-            rows.twist_impulse = 0;
+            if constexpr (D == 3) rows.twist_impulse = 0;
             rows.rolling_impulse = {};
             s.contacts.rows().set(index, rows);
         }
@@ -85,16 +85,30 @@ void Solver<D>::copy_struck(Section& s, const Part& places) {
         }
         const std::uint32_t from = s.struck[place];
         s.settling.rows().set(place, s.contacts.rows().get(from));
-        s.settling.a(place) = s.contacts.a(from);
-        s.settling.b(place) = s.contacts.b(from);
+        s.settling.a(place) = record_of<D>(s.contacts.a(from));
+        s.settling.b(place) = record_of<D>(s.contacts.b(from));
         traits |= s.contacts.traits(from / s.contacts.width());
     }
 }
 
 template <int D>
 void Solver<D>::return_struck(Section& s, const Part& places) {
-    for (std::size_t place = places.begin; place < std::min(places.end, s.struck.size()); ++place)
-        s.contacts.rows().set(s.struck[place], s.settling.rows().get(place));
+    static constexpr Rows model{};
+    const auto give_back = [&](std::size_t place, const float& member) {
+        const std::size_t field = field_of(model, member);
+        s.contacts.rows().at(s.struck[place], field) = s.settling.rows().at(place, field);
+    };
+    for (std::size_t place = places.begin; place < std::min(places.end, s.struck.size()); ++place) {
+        for (const NormalRow<D, float>& p : model.points) give_back(place, p.impulse);
+        for (const float& impulse : model.friction_impulse) give_back(place, impulse);
+        if constexpr (D == 3) give_back(place, model.twist_impulse);
+        if (!(s.settling.traits(place / s.settling.width()) & some_rolling)) continue;
+        if constexpr (D == 2) {
+            give_back(place, model.rolling_impulse);
+        } else {
+            for (int k = 0; k < 3; ++k) give_back(place, model.rolling_impulse[k]);
+        }
+    }
 }
 
 /// `visit(section, blocks)` for a share of the copies; those of the overflow are for the first worker alone.
@@ -187,18 +201,17 @@ void Solver<D>::find_struck_blocks(const Crew& crew) {
     each_used([&](Section& s) {
         const Part part = crew.part(s.contacts.blocks());
         const std::size_t width = s.contacts.width();
-        const BlockSpan<D> all = s.contacts.span(0, s.contacts.blocks());
         for (std::size_t block = part.begin; block < part.end; ++block) {
             const std::size_t first = block * width, end = first + width;
             if (!groups_known_) {
                 s.groups[block] = 0;
                 for (std::size_t i = first; i < end; ++i)
-                    s.groups[block] |= group_bit(all.a[i]) | group_bit(all.b[i]);
+                    s.groups[block] |= group_bit(s.contacts.a(i)) | group_bit(s.contacts.b(i));
             }
             s.has_struck[block] = 0;
             if (!(s.groups[block] & struck_groups_)) continue;
             for (std::size_t i = first; i < end; ++i)
-                s.has_struck[block] |= is_struck_[all.a[i]] | is_struck_[all.b[i]];
+                s.has_struck[block] |= is_struck_[s.contacts.a(i)] | is_struck_[s.contacts.b(i)];
         }
     });
     crew.meet();
@@ -213,21 +226,16 @@ void Solver<D>::sum_struck() {
     sums_.resize(records_.size());
     RecordView<D> sums = view_;
     sums.records = sums_.data();
-    const auto begin_sum = [&](std::uint32_t slot) {
+    // What the blocks give to other bodies is not looked at.
+    for (const std::uint32_t slot : struck_slots_) {
         Body<D, float> body = gather<float>(view_, &slot);
         body.motion = {};
         write_record(sums, &slot, body);
-    };
+    }
     wanted_.clear();
     each_used([&](Section& s) {
         for (std::size_t block = 0; block < s.contacts.blocks(); ++block) {
-            if (!s.has_struck[block]) continue;
-            const BlockSpan<D> one = s.contacts.span(block, 1);
-            wanted_.push_back({one, &passes_of(s)});
-            for (std::size_t lane = 0; lane < s.contacts.width(); ++lane) {
-                begin_sum(one.a[lane]);
-                begin_sum(one.b[lane]);
-            }
+            if (s.has_struck[block]) wanted_.push_back({s.contacts.span(block, 1), &passes_of(s)});
         }
     });
     for (const auto& [block, passes] : wanted_) passes->warm_start(block, sums);

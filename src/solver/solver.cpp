@@ -145,9 +145,6 @@ void Solver<D>::step_through(const SolverInput<D>& input, const Crew& crew) {
         each_share(crew, true, [&](const Passes<D>& passes, const BlockSpan<D>& span) {
             (i == 0 ? passes.solve : passes.solve_and_tally)(span, view_, sub_);
         });
-        each_share(crew, false,
-                   [](const Passes<D>& passes, const BlockSpan<D>& span) { passes.find_pushing(span); });
-        crew.meet();
         crew.alone([&] {
             find_struck();
             some_joints_struck_ = some_struck_ && pick_struck_joints();
