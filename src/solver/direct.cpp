@@ -260,10 +260,7 @@ void DirectSolver<D>::mend(const Group& group) {
         matrix_.factorise(group.first_joint, group.last_joint, open_);
     }
     matrix_.solve(group.first_joint, group.last_joint, right_);
-    for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
-        members_[i].wanted = {};
-        members_[i].wanted_spin = {};
-    }
+    clear_wanted(group);
     each_row(group, [&](std::uint32_t node, std::uint32_t row) {
         Member &a = members_[joints_[node].a], &b = members_[joints_[node].b];
         const Effect& e = effects_[row];
@@ -308,8 +305,9 @@ void DirectSolver<D>::keep_impulses(DirectJoint<D>& joint) {
 }
 
 /// Solves the rows as laid, until limits, motors and friction agree on which of them hold. In the end no
-/// limit pulls: then what was found is the nearest of all velocities that those limits allow which hold, and
-/// has no more energy than the velocities without the joints (as to stand still is allowed, too).
+/// limit pulls. Where speeds are measured along the directions of the impulses, what was found is then the
+/// nearest of all velocities that the limits allow which hold, and has no more energy than the velocities
+/// without the joints (as to stand still is allowed, too).
 template <int D>
 void DirectSolver<D>::solve_as_laid(const Group& group) {
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) set_effects(joints_[k]);

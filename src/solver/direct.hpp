@@ -130,6 +130,7 @@ class DirectSolver {
     bool gains_energy(const Group& group);
     bool is_driven(std::uint32_t node, std::uint32_t row) const;
     void project(const Group& group);
+    void clear_wanted(const Group& group);
     void sum_wanted(const Group& group);
     void re_aim(const Group& group);
     double misdirection(const Group& group) const;

@@ -170,13 +170,18 @@ void DirectSolver<D>::take_back(const Group& group) {
     }
 }
 
-/// Sums up what the impulses of the joints are on the bodies along the directions as laid.
 template <int D>
-void DirectSolver<D>::sum_wanted(const Group& group) {
+void DirectSolver<D>::clear_wanted(const Group& group) {
     for (std::uint32_t i = group.first_body; i < group.last_body; ++i) {
         members_[i].wanted = {};
         members_[i].wanted_spin = {};
     }
+}
+
+/// Sums up what the impulses of the joints are on the bodies along the directions as laid.
+template <int D>
+void DirectSolver<D>::sum_wanted(const Group& group) {
+    clear_wanted(group);
     for (std::uint32_t k = group.first_joint; k < group.last_joint; ++k) {
         Member &a = members_[joints_[k].a], &b = members_[joints_[k].b];
         const Side w = wrench_of(joints_[k]);
@@ -259,6 +264,7 @@ bool DirectSolver<D>::gains_energy(const Group& group) {
     template void DirectSolver<D>::stiffen(const Group&);              \
     template void DirectSolver<D>::answer_by_mass(const Group&);       \
     template void DirectSolver<D>::take_back(const Group&);            \
+    template void DirectSolver<D>::clear_wanted(const Group&);         \
     template void DirectSolver<D>::re_aim(const Group&);               \
     template double DirectSolver<D>::misdirection(const Group&) const; \
     template bool DirectSolver<D>::gains_energy(const Group&);
